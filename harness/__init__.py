@@ -1,0 +1,1 @@
+"""Exact angular Voronoi diagrams and the experimental study of their complexity."""

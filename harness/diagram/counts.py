@@ -1,0 +1,72 @@
+"""The frozen record of what a diagram contains."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Literal
+
+Domain = Literal["kernel", "interior", "plane"]
+Objective = Literal["smallest", "largest"]
+NodeKind = Literal["triple", "crossing", "saddle", "endpoint", "boundary", "infinity"]
+
+DOMAINS: tuple[Domain, ...] = ("kernel", "interior", "plane")
+OBJECTIVES: tuple[Objective, ...] = ("smallest", "largest")
+NODE_KINDS: tuple[NodeKind, ...] = (
+    "triple",
+    "crossing",
+    "saddle",
+    "endpoint",
+    "boundary",
+    "infinity",
+)
+
+
+@dataclass(frozen=True)
+class Counts:
+    """How many objects of each kind an angular Voronoi diagram has.
+
+    ``vertices`` = triple + crossing + saddle: the points where at least three Voronoi edges
+    meet.  ``nodes`` counts points, except ``infinity``, which counts the unbounded ends of
+    edges; ``boundary_ends`` counts the edge ends that lie on the domain's boundary (two edges
+    may end at one boundary point).  ``degrees`` maps the degree of a vertex to the number of
+    vertices that have it.  ``components`` are the connected components of
+    edges ∪ nodes ∪ boundary of the domain; a loop (closed edge without a node) is one of its own.
+    ``certified`` says that every combinatorial decision behind the record was exact.
+    """
+
+    domain: Domain
+    objective: Objective
+    builder: str
+    n: int
+    cells: int
+    edges: int
+    vertices: int
+    regions: int
+    loops: int
+    components: int
+    unbounded: int
+    boundary_ends: int
+    nodes: Mapping[NodeKind, int]
+    degrees: Mapping[int, int]
+    certified: bool
+
+    def as_dict(self) -> dict[str, Any]:
+        """The record as plain JSON values, keys in the order documented in the README."""
+        return {
+            "domain": self.domain,
+            "objective": self.objective,
+            "builder": self.builder,
+            "n": self.n,
+            "cells": self.cells,
+            "edges": self.edges,
+            "vertices": self.vertices,
+            "regions": self.regions,
+            "loops": self.loops,
+            "components": self.components,
+            "unbounded": self.unbounded,
+            "boundary_ends": self.boundary_ends,
+            "nodes": {kind: self.nodes.get(kind, 0) for kind in NODE_KINDS},
+            "degrees": {str(degree): self.degrees[degree] for degree in sorted(self.degrees)},
+            "certified": self.certified,
+        }

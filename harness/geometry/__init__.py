@@ -1,0 +1,1 @@
+"""See the README for what lives in this room."""
