@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from fractions import Fraction
-from typing import Any
+from typing import Any, Final
 
 from flint import fmpq
 
@@ -67,4 +67,4 @@ def resolve(
 
 
 #: What a filter says when rounding could change the sign.
-UNSURE = 2
+UNSURE: Final = 2
