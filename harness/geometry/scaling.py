@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from harness.geometry.coordinates import Floats
-from harness.geometry.instance import Instance
 
 
-def scaled(instance: Instance) -> tuple[Floats, float]:
-    """The instance's ``floats`` times a power of two that brings them into [−1, 1], and the slack.
+def scaled(floats: Floats, rounded: bool) -> tuple[Floats, float]:
+    """``floats`` times the power of two that brings them into [−1, 1], and the slack of filters.
+
+    ``rounded`` says that the floats are only the nearest doubles of the true coordinates.
 
     Scaling changes no sign of a homogeneous predicate.  The slack is 0 if every scaled double is
     exactly the (scaled) coordinate; otherwise it is 32 ε + 2⁻¹⁰⁵⁰, where ε bounds the distance
@@ -21,14 +22,13 @@ def scaled(instance: Instance) -> tuple[Floats, float]:
       scaling; if the largest is at least 2⁻¹⁰⁰⁰, both are at most ε = 2⁻⁵³ afterwards.  If it is
       less, the slack is so large that no filter decides anything.
     """
-    floats = instance.floats
     largest = float(np.abs(floats).max(initial=0.0))
-    if largest == 0.0 or (instance.exact is not None and largest < 2.0**-1000):
-        return np.zeros_like(floats), 0.0 if instance.exact is None else 32.0
+    if largest == 0.0 or (rounded and largest < 2.0**-1000):
+        return np.zeros_like(floats), 32.0 if rounded else 0.0
     exponent = -int(np.frexp(largest)[1])
     with np.errstate(under="ignore"):
         result: Floats = np.ldexp(floats, exponent)
-        if instance.exact is not None:
+        if rounded:
             return result, 32 * 2.0**-53
         exact = bool((np.ldexp(result, -exponent) == floats).all())
     return result, 0.0 if exact else 32 * 2.0**-1075 + 2.0**-1050

@@ -94,7 +94,7 @@ def _refuse_repeated_segment(instance: Instance, ends: Ints) -> None:
 
 def _first_conflict(instance: Instance, ends: Ints, representative: Ints) -> tuple[int, int] | None:
     """Two segments in conflict, or None; ``ends`` are ranks, the smaller first."""
-    coordinates, slack = scaled(instance)
+    coordinates, slack = scaled(instance.floats, instance.exact is not None)
     x, y = coordinates.reshape(-1, 2)[representative].T
     n = len(ends)
     # ends before starts at one point: key 2·rank for an end, 2·rank + 1 for a start
