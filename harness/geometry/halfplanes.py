@@ -60,12 +60,13 @@ class HalfPlanes:
         (ux, uy), (vx, vy) = self.direction(i), self.direction(j)
         return exact.sign(ux * vy - uy * vx)
 
-    def headings(self) -> npt.NDArray[np.int8]:
-        """The sign of the x-component of every direction."""
+    def headings(self, axis: int = 0) -> npt.NDArray[np.int8]:
+        """The sign of every direction's component along x (``axis`` 0) or y (1)."""
         if self.instance.exact is None:
-            x = self.instance.segments[:, :, 0]
-            return (x[:, 1] > x[:, 0]).astype(np.int8) - (x[:, 1] < x[:, 0]).astype(np.int8)
-        signs = [exact.sign(self.direction(i)[0]) for i in range(self.instance.n)]
+            along = self.instance.segments[:, :, axis]
+            start, end = along[:, 0], along[:, 1]
+            return (end > start).astype(np.int8) - (end < start).astype(np.int8)
+        signs = [exact.sign(self.direction(i)[axis]) for i in range(self.instance.n)]
         return np.array(signs, dtype=np.int8)
 
     def envelope(self, chosen: npt.NDArray[np.bool_]) -> list[int]:

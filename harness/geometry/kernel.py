@@ -17,6 +17,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from harness.errors import UserError
 from harness.geometry import exact
@@ -101,14 +102,11 @@ def why_not_star_shaped(instance: Instance, found: Kernel | None = None) -> str 
     found = found or kernel(instance)
     if found.has_interior:
         return None
+    flat = {-1: "empty", 0: "a point, without interior", 1: "a segment, without interior"}
     edges = ", ".join(map(str, found.witness[:-1])) + f" and {found.witness[-1]} {COUNTING}"
-    if found.is_empty:
-        fact = "the kernel is empty"
-    else:
-        fact = "the kernel has no interior, it is a " + ("point", "segment")[found.dimension]
     return (
-        f"{instance.label}: the polygon is not star-shaped in the sense needed here: {fact}; "
-        f"no point lies strictly on the inner side of edges {edges}"
+        f"{instance.label}: the polygon is not star-shaped: its kernel is {flat[found.dimension]} "
+        f"(no point lies strictly on the inner side of edges {edges})"
     )
 
 
@@ -168,13 +166,24 @@ class _Gap:
         headings = halfplanes.headings()
         self.floor = _Chain(halfplanes, halfplanes.envelope(headings > 0))
         self.roof = _Chain(halfplanes, halfplanes.envelope(headings < 0)[::-1])
-        upright = [(i, *halfplanes.ends(i)) for i in np.flatnonzero(headings == 0).tolist()]
-        lefts = [(-a[0], i) for i, a, b in upright if b[1] < a[1]]
-        rights = [(a[0], i) for i, a, b in upright if b[1] > a[1]]
-        self.left_edge = min(lefts)[1] if lefts else None
-        self.right_edge = min(rights)[1] if rights else None
-        self.left = -min(lefts)[0] if lefts else None
-        self.right = min(rights)[0] if rights else None
+        upright = np.where(headings == 0, halfplanes.headings(axis=1), 0)
+        self.left_edge, self.left = self._vertical_bound(upright < 0, -1)
+        self.right_edge, self.right = self._vertical_bound(upright > 0, 1)
+
+    def _vertical_bound(self, chosen: npt.NDArray[np.bool_], way: int) -> tuple[int | None, Any]:
+        """The vertical edge that bounds x most (``way`` 1: from the right), and its abscissa.
+
+        Rounding is monotone: only edges whose rounded abscissa is extreme need be looked at.
+        """
+        edges = np.flatnonzero(chosen)
+        if not edges.size:
+            return None, None
+        x = way * self.halfplanes.instance.segments[edges, 0, 0]
+        extreme = edges[x == x.min()].tolist()
+        if self.halfplanes.instance.exact is None:
+            extreme = extreme[:1]
+        best = min(extreme, key=lambda edge: way * self.halfplanes.ends(edge)[0][0])
+        return best, self.halfplanes.ends(best)[0][0]
 
     def height(self, x: Any) -> Any:
         """h(x)."""
@@ -258,10 +267,8 @@ class _Gap:
 
         floor = self.floor.edges[from_left(self.floor) : to_right(self.floor) + 1]
         roof = self.roof.edges[from_left(self.roof) : to_right(self.roof) + 1]
-        right, left = (
-            self._vertical(self.right, self.right_edge),
-            self._vertical(self.left, self.left_edge),
-        )
+        right = self._vertical(self.right, self.right_edge)
+        left = self._vertical(self.left, self.left_edge)
         return [*floor, *right, *roof[::-1], *left]
 
     def _open(self, chain: _Chain, i: int) -> bool:
