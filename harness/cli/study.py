@@ -1,0 +1,167 @@
+"""``avd study``: run a study file, or a built-in study, and report on it."""
+
+from __future__ import annotations
+
+import argparse
+import shlex
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from harness.study.runner import Summary
+    from harness.study.study_file import Study
+
+FAILED = 3
+INTERRUPTED = 130
+
+DESCRIPTION = """\
+Run the tasks of a study file (TOML), or of a built-in study, and write the report.  Every finished
+task is a row in DIR/rows.csv at once; an interrupted or killed run continues with --resume."""
+
+
+def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the verb ``study``."""
+    parser = subparsers.add_parser(
+        "study", help="run a study and report on it", description=DESCRIPTION, allow_abbrev=False
+    )
+    parser.add_argument(
+        "study", metavar="STUDY", nargs="?", help="a study file, or the name of a built-in study"
+    )
+    parser.add_argument("--list", action="store_true", help="list the built-in studies and exit")
+    parser.add_argument(
+        "--out", metavar="DIR", type=Path, help="the study's directory (default: results/NAME)"
+    )
+    parser.add_argument(
+        "-j", "--jobs", metavar="K", type=_positive, help="tasks at a time (default: processors)"
+    )
+    parser.add_argument(
+        "--engine", choices=("local", "dask"), default="local", help="where tasks run"
+    )
+    parser.add_argument(
+        "--scheduler",
+        metavar="ADDRESS",
+        help="with --engine dask: a running scheduler, such as tcp://host:8786 "
+        "(default: a local cluster)",
+    )
+    mode = parser.add_mutually_exclusive_group()
+    mode.add_argument("--resume", **_mode("resume"), help="run the tasks that have no row yet")
+    mode.add_argument(
+        "--retry", **_mode("retry"), help="as --resume, and repeat the tasks that failed"
+    )
+    mode.add_argument(
+        "--fresh",
+        **_mode("fresh"),
+        help="run everything; what is there is moved to DIR/earlier, not deleted",
+    )
+    parser.add_argument("--no-report", action="store_true", help="leave the report out")
+    parser.set_defaults(run=run, usage_error=parser.error)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Run the study; exit status 0, 3 (some tasks failed) or 130 (interrupted)."""
+    if args.list:
+        return _list()
+    if args.study is None:
+        args.usage_error("name a study file or a built-in study (--list shows them)")
+    if args.scheduler is not None and args.engine != "dask":
+        args.usage_error("--scheduler needs --engine dask")
+
+    from harness.study.builtin import find_study
+
+    study = find_study(args.study)
+    directory = args.out or Path("results") / study.name
+    summary = _run(args, study, directory)
+    if summary.interrupted and summary.missing:
+        return _say_interrupted(args, summary)
+    _say_how_it_went(args, summary)
+    if not args.no_report:
+        try:
+            _report(directory)
+        except KeyboardInterrupt:
+            print(f"\navd: interrupted; report later with: avd report {directory}", file=sys.stderr)
+            return INTERRUPTED
+    return FAILED if summary.failed else 0
+
+
+def _list() -> int:
+    from harness.study.builtin import builtin_studies
+
+    for name, study in builtin_studies().items():
+        print(f"{name}\t{len(study.tasks)} tasks\t{study.description}")
+    return 0
+
+
+def _run(args: argparse.Namespace, study: Study, directory: Path) -> Summary:
+    from harness.study.runner import run_study
+
+    return run_study(
+        study,
+        directory,
+        mode=args.mode,
+        jobs=args.jobs,
+        engine=args.engine,
+        scheduler=args.scheduler,
+        command=_command(args, f"--{args.mode}" if args.mode != "new" else None),
+        resume_command=_command(args, "--resume"),
+    )
+
+
+def _report(directory: Path) -> None:
+    """Write the report and print where it is and what it concludes."""
+    from harness.report import summary_lines, write_report
+
+    print(f"report: {write_report(directory)}", flush=True)
+    for line in summary_lines(directory):
+        print(line)
+
+
+def _say_interrupted(args: argparse.Namespace, summary: Summary) -> int:
+    done = summary.total - summary.missing
+    print(
+        f"avd: interrupted; {done} of {summary.total} tasks are kept in {summary.directory}; "
+        f"continue with: {_command(args, '--resume')}",
+        file=sys.stderr,
+    )
+    return INTERRUPTED
+
+
+def _say_how_it_went(args: argparse.Namespace, summary: Summary) -> None:
+    from harness.study.progress import tally
+
+    kept = "" if summary.added else " (all were there already)"
+    print(
+        f"avd: {summary.total} tasks: {tally(summary.statuses)}{kept}; rows in {summary.directory}",
+        file=sys.stderr,
+    )
+    if summary.failed:
+        print(
+            f"avd: {summary.failed} failed, see {summary.directory / 'failures.log'}; "
+            f"repeat them with: {_command(args, '--retry')}",
+            file=sys.stderr,
+        )
+
+
+def _command(args: argparse.Namespace, mode: str | None) -> str:
+    """The command line as it was given, but with another mode."""
+    words = ["avd", "study", args.study]
+    for option in ("out", "jobs", "scheduler"):
+        value = getattr(args, option)
+        if value is not None:
+            words += [f"--{option}", str(value)]
+    if args.engine != "local":
+        words += ["--engine", args.engine]
+    if args.no_report:
+        words.append("--no-report")
+    return shlex.join([*words, mode] if mode else words)
+
+
+def _mode(name: str) -> dict[str, Any]:
+    return {"dest": "mode", "action": "store_const", "const": name, "default": "new"}
+
+
+def _positive(text: str) -> int:
+    value = int(text)
+    if value < 1:
+        raise argparse.ArgumentTypeError(f"{value} must be at least 1")
+    return value
