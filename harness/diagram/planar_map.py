@@ -1,0 +1,224 @@
+"""The planar map every builder returns: nodes, edges, cells, and how they touch.
+
+The map is combinatorial.  Where its objects lie is known to *places* (of nodes) and *courses* (of
+edges), which belong to the builder; this room needs no more of them than the two protocols below.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import cached_property
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.cluster.hierarchy import DisjointSet
+
+from harness.diagram.counts import Counts, Domain, NodeKind, Objective
+from harness.geometry.instance import Instance
+
+RationalPoint = tuple[Fraction, Fraction]
+Window = tuple[float, float, float, float]
+VERTEX_KINDS = ("triple", "crossing", "saddle")
+
+
+class Place(Protocol):
+    """Exact isolating data of a point."""
+
+    def enclosure(self, bits: int) -> tuple[RationalPoint, RationalPoint]:
+        """Rational corners (low, high) of a box around the point, of about ``bits`` bits."""
+        ...
+
+
+class Course(Protocol):
+    """The way of an edge between its ends."""
+
+    def polyline(self, tolerance: float, window: Window | None) -> NDArray[np.float64]:
+        """Points along the edge, shape (m, 2), at most ``tolerance`` away from it."""
+        ...
+
+    def cotangent_range(self) -> tuple[float, float]:
+        """The infimum and supremum of cot θ over the open edge (±inf where unbounded)."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Node:
+    """Where edges meet or end.
+
+    ``point``: (x, y) as doubles; for kind ``infinity`` the unit vector of the direction in which
+    the edge leaves.  ``segments``: those whose cells meet here or that tie here, increasing.
+    ``degree``: edge ends at this node.  ``endpoint``: whether a segment ends here.
+    """
+
+    kind: NodeKind
+    point: tuple[float, float]
+    segments: tuple[int, ...]
+    degree: int
+    endpoint: bool = False
+    place: Place | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Edge:
+    """A Voronoi edge, directed from node ``start`` to node ``end`` (both None for a loop).
+
+    ``segments`` = (winner to the left, winner to the right); ``left`` and ``right`` are the cells.
+    Every unbounded end has its own node of kind ``infinity``.
+    """
+
+    segments: tuple[int, int]
+    start: int | None
+    end: int | None
+    left: int
+    right: int
+    course: Course
+
+    @property
+    def is_loop(self) -> bool:
+        """A closed edge without a node."""
+        return self.start is None
+
+    def polyline(self, tolerance: float, window: Window | None = None) -> NDArray[np.float64]:
+        """Points from start to end, shape (m, 2), within ``tolerance`` of the true curve.
+
+        Unbounded ends are followed until they have left ``window`` (xmin, ymin, xmax, ymax), by
+        default three times the box of the segments and nodes.
+        """
+        return self.course.polyline(tolerance, window)
+
+    @cached_property
+    def cotangent_range(self) -> tuple[float, float]:
+        """(infimum, supremum) of cot θ of the two tied segments over the open edge."""
+        return self.course.cotangent_range()
+
+
+class Side(NamedTuple):
+    """One step of a boundary walk: an edge (or a piece of the domain's boundary) and its sense.
+
+    With ``forward`` the walk follows the edge's direction; the cell lies to its left either way.
+    """
+
+    index: int
+    forward: bool
+    is_wall: bool = False
+
+
+Walk = tuple[Side, ...]
+
+
+@dataclass(frozen=True)
+class Wall:
+    """A straight piece of the domain's boundary, with the domain to its left.
+
+    ``ends``: the doubles of both ends; ``nodes``: the nodes there (None at a plain corner).
+    """
+
+    ends: tuple[tuple[float, float], tuple[float, float]]
+    nodes: tuple[int | None, int | None]
+    cell: int
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A Voronoi cell: a maximal connected piece of the region of ``segment``.
+
+    ``outer`` runs counter-clockwise around the cell, through infinity where ``bounded`` is false
+    (None only for an unbounded cell that no edge bounds at infinity); ``holes`` run clockwise.
+    """
+
+    segment: int
+    bounded: bool
+    outer: Walk | None
+    holes: tuple[Walk, ...]
+
+    @property
+    def walks(self) -> tuple[Walk, ...]:
+        """The outer walk, if any, and the holes."""
+        return (*(() if self.outer is None else (self.outer,)), *self.holes)
+
+
+@dataclass(frozen=True, eq=False)
+class PlanarMap:
+    """An angular Voronoi diagram.
+
+    ``corners``: the counter-clockwise corners of the domain as doubles, (k, 2), or None for the
+    plane.  ``witnesses``: exact points with the index of the cell they lie in (−1: outside), at
+    least one for every cell.  ``locator`` finds the cell of an exact point: its index, −1 outside
+    the domain, None on an edge or node.
+    """
+
+    instance: Instance
+    domain: Domain
+    objective: Objective
+    builder: str
+    certified: bool
+    nodes: tuple[Node, ...]
+    edges: tuple[Edge, ...]
+    cells: tuple[Cell, ...]
+    walls: tuple[Wall, ...]
+    corners: NDArray[np.float64] | None
+    witnesses: tuple[tuple[RationalPoint, int], ...] = field(repr=False)
+    locator: Callable[[RationalPoint], int | None] = field(repr=False)
+
+    @cached_property
+    def counts(self) -> Counts:
+        """The record of everything that is counted; O(nodes + edges + cells)."""
+        kinds = Counter(node.kind for node in self.nodes)
+        vertices = [node for node in self.nodes if node.kind in VERTEX_KINDS]
+        return Counts(
+            domain=self.domain,
+            objective=self.objective,
+            builder=self.builder,
+            n=self.instance.n,
+            cells=len(self.cells),
+            edges=len(self.edges),
+            vertices=len(vertices),
+            regions=len({cell.segment for cell in self.cells}),
+            loops=sum(edge.is_loop for edge in self.edges),
+            components=self._components(),
+            unbounded=sum(not cell.bounded for cell in self.cells),
+            boundary_ends=sum(node.degree for node in self.nodes if node.kind == "boundary"),
+            nodes=dict(kinds),
+            degrees=dict(Counter(node.degree for node in vertices)),
+            certified=self.certified,
+        )
+
+    def _components(self) -> int:
+        """Components of edges ∪ nodes ∪ boundary; unbounded ends meet in one point, infinity."""
+        names: list[object] = [k for k, node in enumerate(self.nodes) if node.kind != "infinity"]
+        if any(node.kind == "infinity" for node in self.nodes):
+            names.append("infinity")
+        if self.corners is not None:
+            names.append("boundary")
+        parts: DisjointSet[object] = DisjointSet(names)
+        for edge in self.edges:
+            if edge.start is not None and edge.end is not None:
+                parts.merge(self._anchor(edge.start), self._anchor(edge.end))
+        for k, node in enumerate(self.nodes):
+            if node.kind == "boundary":
+                parts.merge(k, "boundary")
+        return int(parts.n_subsets) + sum(edge.is_loop for edge in self.edges)
+
+    def _anchor(self, node: int) -> object:
+        return "infinity" if self.nodes[node].kind == "infinity" else node
+
+    def locate(self, points: Sequence[Sequence[float | Fraction]]) -> list[int | None]:
+        """The cell of each exact point: an index into ``cells``, −1 outside, None on an edge.
+
+        ``points``: shape (m, 2).  Raises ValueError for coordinates that are not finite.
+        """
+        return [self.locator((Fraction(x), Fraction(y))) for x, y in points]
+
+    def sanity_check(self) -> None:
+        """Check everything a diagram must satisfy.
+
+        Raises:
+            harness.diagram.checks.InsaneMap: names the first object that is wrong, and how.
+        """
+        from harness.diagram.checks import check
+
+        check(self)
