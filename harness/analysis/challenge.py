@@ -91,7 +91,7 @@ class Series:
     """
 
     n: Floats
-    values: Floats
+    observed: Floats
     draws: Floats | None
     censored: tuple[bool, ...]
     whole: bool = True
@@ -122,12 +122,12 @@ def _wiggle(series: Series, reference: float) -> float:
     residuals = []
     for model in MODELS:
         columns = extreme_curves(model, series.n, reference)
-        weights = relative_weights(columns, series.values)
-        fitted = columns @ fit(columns, series.values[None, :], weights)[0]
-        residuals.append(float((relative_miss(series.values, fitted) ** 2).sum()))
+        weights = relative_weights(columns, series.observed)
+        fitted = columns @ fit(columns, series.observed[None, :], weights)[0]
+        residuals.append(float((relative_miss(series.observed, fitted) ** 2).sum()))
     variance = min(residuals) / (len(series.n) - 2)
     if series.draws is not None:
-        scale = np.maximum(series.values, 1.0)
+        scale = np.maximum(series.observed, 1.0)
         variance -= float(((series.draws.std(axis=0) / scale) ** 2).mean())
     return float(np.sqrt(variance)) if variance > TINY**2 else 0.0
 
@@ -136,7 +136,7 @@ def _worlds(series: Series, wiggle: float, seed: int, rounds: int) -> Floats:
     """Values the study could have shown: (rounds, k)."""
     rng = np.random.default_rng(seed)
     k = len(series.n)
-    base = np.tile(series.values, (rounds, 1)) if series.draws is None else series.draws[:rounds]
+    base = np.tile(series.observed, (rounds, 1)) if series.draws is None else series.draws[:rounds]
     scale = wiggle * np.sqrt((k - 2) / rng.chisquare(k - 2, len(base)))
     factor = 1.0 + scale[:, None] * rng.standard_normal((len(base), k))
     return np.maximum(base * factor, 0.0)
@@ -145,9 +145,9 @@ def _worlds(series: Series, wiggle: float, seed: int, rounds: int) -> Floats:
 def _trial(model: Model, series: Series, worlds: Floats, cut: int) -> Trial:
     columns = extreme_curves(model, series.n, float(series.n[cut - 1]))
     small, large = columns[:cut], columns[cut:]
-    weights = relative_weights(small, series.values[:cut])
-    predicted = np.maximum(large @ fit(small, series.values[None, :cut], weights)[0], 0.0)
-    observed = series.values[cut:]
+    weights = relative_weights(small, series.observed[:cut])
+    predicted = np.maximum(large @ fit(small, series.observed[None, :cut], weights)[0], 0.0)
+    observed = series.observed[cut:]
     miss = float(relative_miss(observed, predicted).mean())
 
     predictions = np.maximum(fit(small, worlds[:, :cut], weights) @ large.T, 0.0)
@@ -163,7 +163,7 @@ def _visible(series: Series, observed: Floats, predicted: Floats) -> bool:
 
     One exception: if every count of the study is the same number, no rounding is at work.
     """
-    if not series.whole or np.ptp(series.values) == 0:
+    if not series.whole or np.ptp(series.observed) == 0:
         return True
     return bool(np.abs(observed - predicted).max() > 0.5)
 

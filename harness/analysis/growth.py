@@ -29,15 +29,15 @@ from harness.analysis.verdict import Verdict, judge
 class Growth:
     """The evidence on one curve and its verdict.
 
-    ``n``, ``values``, ``low`` and ``high`` (95 % bootstrap interval of the statistic) have one
+    ``n``, ``observed``, ``low`` and ``high`` (95 % bootstrap interval of the statistic) have one
     entry per size with counts; ``low`` and ``high`` are None where nothing can be resampled.
-    ``ratios`` maps a model's name to values/m(n); ``bounds`` says what unseen tasks leave open.
+    ``ratios`` maps a model's name to observed/m(n); ``bounds`` says what unseen tasks leave open.
     """
 
     headline: str
     statistic: Statistic
     n: Floats
-    values: Floats
+    observed: Floats
     low: Floats | None
     high: Floats | None
     bounds: tuple[Bounds, ...]
@@ -51,7 +51,7 @@ class Growth:
     def censored(self) -> tuple[bool, ...]:
         """Where the true value may lie above the one shown."""
         return tuple(
-            bound.high > value for bound, value in zip(self.bounds, self.values, strict=True)
+            bound.high > value for bound, value in zip(self.bounds, self.observed, strict=True)
         )
 
 

@@ -76,8 +76,10 @@ def fit(columns: Floats, values: Floats, weights: Floats) -> Floats:
     weighted = columns * weights[:, None]
     gram = weighted.T @ weighted
     moments = (values * weights) @ weighted
-    free = np.linalg.solve(gram, moments.T).T
-    edges = np.maximum(moments / np.diag(gram), 0.0)
+    # The inverse of a 2×2 matrix, written out: this is the innermost step of every resampling.
+    adjugate = np.array([[gram[1, 1], -gram[0, 1]], [-gram[1, 0], gram[0, 0]]])
+    free = moments @ adjugate / (gram[0, 0] * gram[1, 1] - gram[0, 1] * gram[1, 0])
+    edges = np.maximum(moments / gram.diagonal(), 0.0)
     gains = edges * moments  # how much each single column lowers the sum of squares
     better = gains[:, 0] >= gains[:, 1]
     on_edge = np.where(np.stack([better, np.logical_not(better)], axis=1), edges, 0.0)

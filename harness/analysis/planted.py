@@ -78,22 +78,25 @@ def design_of(group: Group) -> Design:
 def check(design: Design) -> tuple[Check, ...]:
     """Plant every model in the design and challenge them all; one result per statistic.
 
+    Without scatter all statistics are the same, and there is one result, called maximum.
+
     The planted curve is level·m(n)/m(n₁), its level varied by up to a factor of two so that
     rounding falls differently; each replicate is multiplied by log-normal noise of the design's
     spread and rounded.  Deterministic in the design.
     """
     n = np.array(design.n)
+    judged = JUDGED if design.spread else JUDGED[:1]
     tally = {
-        statistic: {(p.name, c.name): 0 for p in MODELS for c in MODELS} for statistic in JUDGED
+        statistic: {(p.name, c.name): 0 for p in MODELS for c in MODELS} for statistic in judged
     }
-    named = {statistic: dict.fromkeys(BY_NAME, 0) for statistic in JUDGED}
+    named = {statistic: dict.fromkeys(BY_NAME, 0) for statistic in judged}
     for model in MODELS:
         for trial in range(TRIALS):
             seed = _seed(design, model.name, trial)
             level = design.level * (1 + trial / TRIALS)
             curve = level * model.leading(n) / model.leading(n[:1])
             samples = plant(curve, design.replicates, design.spread, seed)
-            for statistic in JUDGED:
+            for statistic in judged:
                 verdict = judge(challenge(_series(n, samples, statistic, seed), seed, ROUNDS))
                 for candidate in (*verdict.too_slow, *verdict.too_fast):
                     tally[statistic][model.name, candidate.name] += 1
@@ -105,7 +108,7 @@ def check(design: Design) -> tuple[Check, ...]:
             {pair: count / TRIALS for pair, count in tally[statistic].items()},
             {name: count / TRIALS for name, count in named[statistic].items()},
         )
-        for statistic in JUDGED
+        for statistic in judged
     )
 
 

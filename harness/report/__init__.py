@@ -1,1 +1,31 @@
-"""See the README for what lives in this room."""
+"""The report of a study: verdicts, figures and tables in one HTML file that needs nothing else."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+__all__ = ["report_with_lines", "summary_lines", "write_report"]
+
+
+def write_report(directory: Path) -> Path:
+    """Write ``report.html``, its figures and derived tables into a study's directory.
+
+    The same rows and manifest give the same bytes (with the same numpy and matplotlib).  Raises
+    UserError if ``directory`` is no study, has no rows, or was written by a newer program.
+    """
+    return report_with_lines(directory)[0]
+
+
+def summary_lines(directory: Path) -> list[str]:
+    """The verdicts of a study, for a terminal.  Raises UserError as ``write_report`` does."""
+    from harness.report.build import read
+
+    return read(directory).lines
+
+
+def report_with_lines(directory: Path) -> tuple[Path, list[str]]:
+    """Both of the above from one analysis."""
+    from harness.report.build import read, write
+
+    study = read(directory)
+    return write(study, directory), study.lines

@@ -1,0 +1,96 @@
+"""How curves and numbers are written for people."""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from collections.abc import Sequence
+
+from harness.analysis import Key
+
+
+def curve_labels(keys: Sequence[Key]) -> list[str]:
+    """A short, unambiguous label for each group of a study.
+
+    The family, the parameters in which it differs from the study's other groups of that family,
+    and domain, objective and builder where the study has more than one of them for it.
+    """
+    varying: dict[str, set[str]] = defaultdict(set)
+    for family in {key.family for key in keys}:
+        described = [_description(key) for key in keys if key.family == family]
+        for name in {name for description in described for name in description}:
+            if len({str(description.get(name)) for description in described}) > 1:
+                varying[family].add(name)
+    return [_label(key, varying[key.family]) for key in keys]
+
+
+def _label(key: Key, names: set[str]) -> str:
+    described = _description(key)
+    parts = [f"{name} = {described[name]}" for name in key.parameters if name in names]
+    parts += [described[name] for name in ("domain", "objective", "builder") if name in names]
+    return ", ".join([key.family, *parts])
+
+
+def _description(key: Key) -> dict[str, str]:
+    parameters = {name: plain(value) for name, value in key.parameters.items()}
+    rest = {"domain": key.domain, "objective": key.objective, "builder": key.builder}
+    return {**parameters, **rest}
+
+
+def parameters(key: Key) -> str:
+    """All parameters of a group on one line."""
+    return ", ".join(f"{name} = {plain(value)}" for name, value in key.parameters.items())
+
+
+def plain(value: object) -> str:
+    """A parameter's value: floats short, everything else as it is."""
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def number(value: float | None, digits: int = 3) -> str:
+    """A number for a table: integers whole, others to ``digits`` significant digits."""
+    if value is None or math.isnan(value):
+        return "–"
+    if math.isinf(value):
+        return "∞" if value > 0 else "−∞"
+    if float(value).is_integer() and abs(value) < 1e15:
+        return f"{int(value)}".replace("-", "−")
+    if abs(value) >= 10**digits:
+        return f"{value:.0f}".replace("-", "−")
+    text = f"{value:.{digits}g}"
+    if "e" in text:  # too small for a table of decimals
+        mantissa, exponent = text.split("e")
+        return f"{mantissa}·10^{int(exponent)}".replace("-", "−")
+    return text.replace("-", "−")
+
+
+def bracket(low: float | None, high: float | None, digits: int = 3) -> str:
+    """An interval, or nothing if there is none."""
+    if low is None or high is None or math.isnan(low) or math.isnan(high):
+        return ""
+    return f"[{number(low, digits)}, {number(high, digits)}]"
+
+
+def signed_percent(value: float) -> str:
+    """A relative miss: +37 %."""
+    rounded = round(100 * value)
+    return f"{rounded:+d} %".replace("-", "−") if rounded else "0 %"
+
+
+def percent(share: float) -> str:
+    """A share: 98 %."""
+    return f"{100 * share:.0f} %"
+
+
+def sizes(values: Sequence[float]) -> str:
+    """The sizes of a curve: all of them if few, the range otherwise."""
+    if not len(values):
+        return "none"
+    if len(values) <= 8:
+        return ", ".join(f"{value:g}" for value in values)
+    return f"{values[0]:g} … {values[-1]:g} ({len(values)} sizes)"
+
+
+def plural(count: int, noun: str) -> str:
+    """1 task, 2 tasks."""
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
