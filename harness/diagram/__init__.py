@@ -9,6 +9,7 @@ from harness.errors import UserError
 if TYPE_CHECKING:
     from harness.diagram.counts import Domain, Objective
     from harness.diagram.planar_map import PlanarMap
+    from harness.geometry.coordinates import Point
     from harness.geometry.instance import Instance
 
 BUILDERS = ("reference",)
@@ -30,17 +31,30 @@ def build(
             polygon that is not star-shaped, or whose kernel has no interior, in domain ``kernel``.
     """
     from harness.diagram.reference import build_reference
-    from harness.geometry.kernel import kernel
 
     if builder not in BUILDERS:
         raise UserError(f"unknown builder {builder!r}: choose from {', '.join(BUILDERS)}")
     domain = domain or ("kernel" if instance.kind == "polygon" else "plane")
-    if domain != "plane" and instance.kind != "polygon":
-        raise UserError(f"domain {domain!r} needs a polygon, not segments")
+    return build_reference(instance, domain, objective, domain_corners(instance, domain))
+
+
+def domain_corners(instance: Instance, domain: Domain) -> list[Point]:
+    """The counter-clockwise exact corners of a domain; none for the plane.
+
+    Raises:
+        UserError: as :func:`build`.
+    """
+    from harness.geometry.kernel import kernel, why_not_star_shaped
+
     if domain == "plane":
-        corners = []
-    elif domain == "kernel":
-        corners = kernel(instance).corners
-    else:
-        corners = [a for a, _ in instance.rational_segments()]
-    return build_reference(instance, domain, objective, corners)
+        return []
+    if instance.kind != "polygon":
+        raise UserError(f"{instance.label}: domain {domain} needs a polygon, not segments")
+    if domain == "interior":
+        vertices = [instance.exact_vertex(k) for k in range(instance.n)]
+        return vertices if instance.orientation > 0 else vertices[::-1]
+    found = kernel(instance)
+    reason = why_not_star_shaped(instance, found)
+    if reason is not None:
+        raise UserError(reason)
+    return found.corners

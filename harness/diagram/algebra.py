@@ -52,6 +52,10 @@ def ball_sign(value: arb) -> int | None:
     return 0 if value.is_zero() else None
 
 
+Key = tuple[tuple[int, ...], int]
+"""What a real algebraic number is known by: its polynomial's coefficients and its index."""
+
+
 class RealNumber:
     """The ``index``-th real root (from 0, increasing) of an irreducible integer polynomial."""
 
@@ -62,7 +66,7 @@ class RealNumber:
         self.polynomial = polynomial
         self.index = index
         self.modulus = fmpq_poly(polynomial)
-        self.key = (tuple(int(c) for c in polynomial.coeffs()), index)
+        self.key: Key = (tuple(int(c) for c in polynomial.coeffs()), index)
 
     def ball(self, bits: int) -> arb:
         """An enclosure of the number computed with ``bits`` bits."""
@@ -145,6 +149,13 @@ class Polynomial:
     def on_fibre(self, u: fmpq) -> fmpz_poly:
         """The polynomial in v on the line u = const, denominators cleared by a positive factor."""
         return fmpq_poly([row(u) for row in self.rows]).numer()
+
+    def on_horizontal(self, v: fmpq) -> fmpz_poly:
+        """The polynomial in u on the line v = const, up to a positive factor."""
+        value = fmpq_poly([0])
+        for row in reversed(self.rational_rows):
+            value = value * v + row
+        return value.numer()
 
     def roots_on_fibre(self, u: fmpq) -> int:
         """How many real points the curve has on u = const, which must not be a critical value."""

@@ -93,6 +93,16 @@ class Arc:
         slab = self.slabs.slab_of(u)
         return fibre_points(self.slabs.polynomial, u)[self.branch[slab]]
 
+    def contains(self, p: Point) -> bool:
+        """Whether p, a point of the arc's curve, is an inner point of the arc."""
+        if p.number.key in {event.number.key for event in self.slabs.events}:
+            return False  # arcs are cut at the events that lie on them
+        branch = self.branch.get(self.slabs.slab_ending_at(p))
+        return (
+            branch is not None
+            and branch == branches_around(self.slabs.polynomial, p, on_curve=True)[0]
+        )
+
     def is_below(self, p: Point) -> bool:
         """Whether the arc passes strictly below p, a point with u within the arc but not on it."""
         below, _ = branches_around(self.slabs.polynomial, p)

@@ -6,7 +6,8 @@ segments win here, and who wins on either side?" can change only at its **events
 * its own critical points: vertical tangents and singular points (needed for the order of its
   branches, and they are where a bisector crosses itself);
 * endpoints of segments and meeting points of the lines of two segments (both rational): there a
-  visual angle is undefined, or the sign of L_i L_j changes, or two angles are 0 together;
+  visual angle is undefined, or the sign of L_i L_j changes, or two angles are 0 together (for
+  collinear segments: all meeting points with their common line);
 * points where it meets another component that shares a segment with it: a third segment ties, or
   the other component of a reducible bisector crosses.  Such a point matters only where the tie is
   the best of all segments, so all others are dropped after an exact test;
@@ -26,7 +27,7 @@ from collections.abc import Iterable, Iterator
 
 from flint import arb, fmpq, fmpz_mpoly
 
-from harness.diagram.algebra import NotGeneric, Point, Polynomial
+from harness.diagram.algebra import Key, NotGeneric, Point, Polynomial
 from harness.diagram.domain import Region
 from harness.diagram.fibres import intersect
 from harness.diagram.scene import Scene
@@ -43,7 +44,7 @@ class Component:
             raise NotGeneric("a vertical asymptote")
         self.polynomial = polynomial
         self.ties: list[Tie] = []
-        self.events: dict[object, Point] = {}
+        self.events: dict[Key, Point] = {}
 
     def add_event(self, p: Point) -> None:
         """Remember p, a point of the curve, as one of its events."""
@@ -55,7 +56,7 @@ class Register:
 
     def __init__(self) -> None:
         """Start empty."""
-        self.points: dict[object, Point] = {}
+        self.points: dict[Key, Point] = {}
 
     def canonical(self, p: Point) -> Point:
         """The first registered point equal to p.
@@ -104,6 +105,9 @@ def find_events(scene: Scene, region: Region, curves: list[Component], register:
         if curve.polynomial.degree_v > 1:
             for p in intersect(curve.polynomial, curve.polynomial.derivative, region.strip):
                 curve.add_event(register.canonical(p))
+        for line in _common_lines(scene, curve):
+            for p in intersect(curve.polynomial, line, region.strip):
+                curve.add_event(register.canonical(p))
     special = _rational_points(scene, region, register)
     for curve in curves:
         for p in special:
@@ -118,6 +122,18 @@ def find_events(scene: Scene, region: Region, curves: list[Component], register:
         for curve in curves:
             if place.number.key not in curve.events and place.sign(curve.polynomial) == 0:
                 curve.add_event(place)
+
+
+def _common_lines(scene: Scene, curve: Component) -> list[Polynomial]:
+    """The lines that carry both segments of one of the curve's ties: both angles are 0 or π there.
+
+    (Where the two lines differ, the curve meets them in endpoints and in their common point only.)
+    """
+    return [
+        scene.line[i]
+        for i, j, _ in curve.ties
+        if _normal_form(scene.line[i].mpoly) == _normal_form(scene.line[j].mpoly)
+    ]
 
 
 def _rational_points(scene: Scene, region: Region, register: Register) -> list[Point]:
@@ -153,11 +169,11 @@ def _vanishes(polynomial: Polynomial, p: Point) -> bool:
     value = fmpq(0)
     for row in reversed(polynomial.rows):
         value = value * v + row(u)
-    return value == 0
+    return bool(value == 0)
 
 
 def _meetings(
-    scene: Scene, region: Region, curves: list[Component], known: set[object]
+    scene: Scene, region: Region, curves: list[Component], known: set[Key]
 ) -> Iterator[Point]:
     """The points where two components with a common segment meet and their tie is the best."""
     by_pair: dict[tuple[int, int], list[tuple[int, Component]]] = defaultdict(list)
@@ -191,7 +207,7 @@ def _meetings(
 
 
 def _wall_events(
-    scene: Scene, region: Region, curves: list[Component], known: set[object]
+    scene: Scene, region: Region, curves: list[Component], known: set[Key]
 ) -> Iterator[Point]:
     """The points of the domain's boundary at which a component's tie is the best of all."""
     for (k, wall), curve in itertools.product(enumerate(region.walls), curves):

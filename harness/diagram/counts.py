@@ -27,10 +27,11 @@ class Counts:
     """How many objects of each kind an angular Voronoi diagram has.
 
     ``vertices`` = triple + crossing + saddle: the points where at least three Voronoi edges
-    meet.  ``nodes`` counts points, except ``infinity``, which counts the unbounded ends of
-    edges; ``boundary_ends`` counts the edge ends that lie on the domain's boundary (two edges
-    may end at one boundary point).  ``degrees`` maps the degree of a vertex to the number of
-    vertices that have it.  ``components`` are the connected components of
+    meet.  ``nodes`` counts points, except for the kinds ``boundary`` and ``infinity``, of which
+    it counts edge ends (two edges may end at one boundary point; ``boundary_points`` counts
+    those).  So Σ degree · count over the vertices, plus the degrees of endpoint nodes, plus
+    boundary, plus infinity is twice the number of edges that are no loops.
+    ``degrees`` maps the degree of a vertex to the number of vertices that have it.  ``components`` are the connected components of
     edges ∪ nodes ∪ boundary of the domain; a loop (closed edge without a node) is one of its own.
     ``certified`` says that every combinatorial decision behind the record was exact.
     """
@@ -46,7 +47,7 @@ class Counts:
     loops: int
     components: int
     unbounded: int
-    boundary_ends: int
+    boundary_points: int
     nodes: Mapping[NodeKind, int]
     degrees: Mapping[int, int]
     certified: bool
@@ -65,7 +66,7 @@ class Counts:
             "loops": self.loops,
             "components": self.components,
             "unbounded": self.unbounded,
-            "boundary_ends": self.boundary_ends,
+            "boundary_points": self.boundary_points,
             "nodes": {kind: self.nodes.get(kind, 0) for kind in NODE_KINDS},
             "degrees": {str(degree): self.degrees[degree] for degree in sorted(self.degrees)},
             "certified": self.certified,

@@ -25,25 +25,28 @@ Strip = tuple[Point | None, Point | None]
 """The vertical strip between two points; None stands for ∓∞."""
 
 
+def compare_points(p: Point, q: Point) -> int:
+    """The sign of the difference of two points' numbers."""
+    return compare_numbers(p.number, q.number)
+
+
 def sort_by_u(points: Sequence[Point]) -> list[Point]:
     """The points in order of increasing u, in O(N log N) comparisons."""
-    return sorted(points, key=cmp_to_key(lambda p, q: compare_numbers(p.number, q.number)))
+    return sorted(points, key=cmp_to_key(compare_points))
 
 
 def rational_between(low: Point | None, high: Point | None) -> fmpq:
     """A short rational strictly between u(low) and u(high); None stands for ∓∞."""
-    if low is None and high is None:
-        return fmpq(0)
     for bits in precisions():
         with ctx.workprec(bits):
-            left = low.number.ball(bits).upper() if low else None
-            right = high.number.ball(bits).lower() if high else None
-            if right is None:
-                return fmpq(left.fmpq().floor() + 1)
-            if left is None:
-                return fmpq(right.fmpq().ceil() - 1)
-            if left < right:
-                return _short_rational(left.fmpq(), right.fmpq())
+            left = low.number.ball(bits).upper().fmpq() if low else None
+            right = high.number.ball(bits).lower().fmpq() if high else None
+        if left is None:
+            return fmpq(0) if right is None else fmpq(right.ceil() - 1)
+        if right is None:
+            return fmpq(left.floor() + 1)
+        if left < right:
+            return _short_rational(left, right)
     raise AssertionError
 
 
@@ -180,9 +183,10 @@ def _only_root(f: list[fmpq_poly], modulus: fmpq_poly) -> fmpq_poly:
 def branches_around(f: Polynomial, p: Point, on_curve: bool = False) -> tuple[int, int]:
     """How many points of the curve f lie strictly below and above p on p's vertical line.
 
-    p may lie on f (``on_curve``: it is known to).  With w = v − v(p), f on that line is Σ c_k w^k with c_k = ∂^k f/∂v^k / k! at
-    p, so the exact signs of the derivatives decide: after dividing by w^m, m the multiplicity of p,
-    the negative and positive roots of what is left are to be counted, which has degree at most 3.
+    p may lie on f (``on_curve``: it is known to).  With w = v − v(p), f on that line is Σ c_k w^k
+    with c_k = ∂^k f/∂v^k / k! at p, so the exact signs of the derivatives decide: after dividing
+    by w^m, m the multiplicity of p, the negative and positive roots of what is left are to be
+    counted, which has degree at most 3.
     If all its roots are real, Descartes' rule of signs is exact; if two are not, only the sign of
     the product of the roots matters.
     """

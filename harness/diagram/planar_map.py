@@ -97,12 +97,12 @@ class Edge:
 
 
 class Side(NamedTuple):
-    """One step of a boundary walk: an edge (or a piece of the domain's boundary) and its sense.
+    """One step of a boundary walk: edge number ``item`` (with ``is_wall``: wall) and its sense.
 
     With ``forward`` the walk follows the edge's direction; the cell lies to its left either way.
     """
 
-    index: int
+    item: int
     forward: bool
     is_wall: bool = False
 
@@ -168,6 +168,7 @@ class PlanarMap:
     def counts(self) -> Counts:
         """The record of everything that is counted; O(nodes + edges + cells)."""
         kinds = Counter(node.kind for node in self.nodes)
+        ends = sum(node.degree for node in self.nodes if node.kind == "boundary")
         vertices = [node for node in self.nodes if node.kind in VERTEX_KINDS]
         return Counts(
             domain=self.domain,
@@ -181,8 +182,8 @@ class PlanarMap:
             loops=sum(edge.is_loop for edge in self.edges),
             components=self._components(),
             unbounded=sum(not cell.bounded for cell in self.cells),
-            boundary_ends=sum(node.degree for node in self.nodes if node.kind == "boundary"),
-            nodes=dict(kinds),
+            boundary_points=kinds["boundary"],
+            nodes={**kinds, "boundary": ends},
             degrees=dict(Counter(node.degree for node in vertices)),
             certified=self.certified,
         )

@@ -83,6 +83,15 @@ class Scene:
             self._ties[key] = Polynomial(form)
         return self._ties[key]
 
+    def jacobian(self, i: int, j: int) -> Polynomial:
+        """The numerator of det(∇(Q_i/L_i), ∇(Q_j/L_j)): zero where the level circles touch."""
+        gradients = []
+        for k in (i, j):
+            q, line = self.q[k].mpoly, self.line[k].mpoly
+            for name in ("u", "v"):
+                gradients.append(line * q.derivative(name) - q * line.derivative(name))
+        return Polynomial(gradients[0] * gradients[3] - gradients[1] * gradients[2])
+
     def side(self, i: int, p: Point) -> int:
         """The sign of L_i at p: on which side of the line of segment i the point is."""
         return p.sign(self.line[i])

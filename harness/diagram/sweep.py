@@ -58,7 +58,7 @@ def sweep(arcs: list[Arc]) -> Sweep:
     """Sweep over interior-disjoint arcs; O((N + A) log A) exact comparisons."""
     junctions = _junctions(arcs)
     faces, numbering = DisjointSet([0]), itertools.count(1)
-    status = _sorted_on_line([arc for arc in arcs if arc.start is None], _before(junctions))
+    status = sorted_on_line([arc for arc in arcs if arc.start is None], _before(junctions))
     gaps = [0]
     sides: dict[Arc, tuple[int, int]] = {}
     samples: list[tuple[fmpq, fmpq, int]] = []
@@ -87,7 +87,7 @@ def sweep(arcs: list[Arc]) -> Sweep:
         junction.left = status[low:high]
         following = junctions[k + 1].point if k + 1 < len(junctions) else None
         u = rational_between(junction.point, following)
-        junction.right = _sorted_on_line(junction.right, u)
+        junction.right = sorted_on_line(junction.right, u)
         below, above = gaps[low], gaps[high]
         if junction.right:
             bounds = open_gaps(junction.right, below, above)
@@ -123,10 +123,14 @@ def _before(junctions: list[Junction]) -> fmpq:
     return rational_between(None, junctions[0].point if junctions else None)
 
 
-def _sorted_on_line(arcs: list[Arc], u: fmpq) -> list[Arc]:
+def sorted_on_line(arcs: list[Arc], u: fmpq) -> list[Arc]:
     """The arcs from bottom to top on u = const, which all of them cross."""
     numbers = {arc: arc.at(u).number for arc in arcs}
-    return sorted(arcs, key=cmp_to_key(lambda a, b: compare_numbers(numbers[a], numbers[b])))
+
+    def compare(a: Arc, b: Arc) -> int:
+        return compare_numbers(numbers[a], numbers[b])
+
+    return sorted(arcs, key=cmp_to_key(compare))
 
 
 def _position(status: list[Arc], junction: Junction) -> int:

@@ -10,8 +10,9 @@ import numpy as np
 from flint import arb, ctx, fmpq
 from numpy.typing import NDArray
 
-from harness.diagram.algebra import Point
+from harness.diagram.algebra import FIRST_PRECISION, NotGeneric, Point
 from harness.diagram.arcs import Arc
+from harness.diagram.fibres import intersect
 from harness.diagram.planar_map import RationalPoint, Window
 from harness.diagram.scene import Scene
 
@@ -56,7 +57,7 @@ def direction_at_infinity(scene: Scene, arc: Arc, outwards: bool) -> tuple[float
 
 
 class ExactCourse:
-    """An edge of the reference builder: a chain of arcs."""
+    """An edge of the reference builder: a chain of arcs whose points can all be had exactly."""
 
     def __init__(
         self, scene: Scene, chain: list[tuple[Arc, bool]], segments: tuple[int, int]
@@ -67,9 +68,162 @@ class ExactCourse:
         self.segments = segments
 
     def polyline(self, tolerance: float, window: Window | None) -> NDArray[np.float64]:
-        """To do."""
-        raise AssertionError
+        """See :meth:`harness.diagram.planar_map.Edge.polyline`.
+
+        All points lie on the edge exactly, up to rounding.  A piece is bisected until its middle
+        is within ``tolerance`` of its chord; that the rest of the piece is, too, is not proved.
+        """
+        if not tolerance > 0:
+            raise ValueError("the tolerance must be positive")
+        points: list[tuple[float, float]] = []
+        limit = _limit(self.scene, window)
+        for arc, forward in self.chain:
+            piece = _arc_polyline(self.scene, arc, tolerance, limit)
+            piece = piece if forward else piece[::-1]
+            points += piece[1:] if points else piece
+        return np.array(points)
 
     def cotangent_range(self) -> tuple[float, float]:
-        """To do."""
-        raise AssertionError
+        """See :attr:`harness.diagram.planar_map.Edge.cotangent_range`.
+
+        cot θ is monotone between the points of the edge where the level circles of the two
+        segments are tangent, that is, where the gradients of their cotangents are parallel.
+        """
+        values = [
+            value
+            for arc, _ in self.chain
+            for value in [*_end_values(self.scene, arc, self.segments), *self._tangencies(arc)]
+        ]
+        return min(values), max(values)
+
+    def _tangencies(self, arc: Arc) -> list[float]:
+        curve = arc.slabs.polynomial
+        jacobian = self.scene.jacobian(*self.segments)
+        if curve.mpoly.gcd(jacobian.mpoly).total_degree() > 0:
+            return []  # cot θ is constant: the curve is a circle through all four endpoints
+        return [
+            cotangent_float(self.scene, self.segments, p)
+            for p in intersect(curve, jacobian)
+            if arc.contains(p)
+        ]
+
+
+def cotangent_float(scene: Scene, segments: tuple[int, int], p: Point) -> float:
+    """cot θ of the two tied segments at p as a double; ±inf where θ is 0 or π.
+
+    p must not be an endpoint of both.
+    """
+    for k in segments:
+        level = scene.level(k, p)
+        if level:
+            return level * math.inf
+        if level == 0:
+            u, v = p.balls(4 * FIRST_PRECISION)
+            with ctx.workprec(4 * FIRST_PRECISION):
+                return float(scene.cotangent(k, u, v).mid())
+    raise ArithmeticError("the visual angles have no value at a common endpoint")
+
+
+def _end_values(scene: Scene, arc: Arc, segments: tuple[int, int]) -> list[float]:
+    """The limits of cot θ at both ends of an arc."""
+    values = []
+    for end in (arc.start, arc.end):
+        if end is None:
+            values.append(math.inf)
+        elif all(scene.level(k, end) is None for k in segments):
+            values.append(_limit_at_endpoint(scene, arc, end, segments[0]))
+        else:
+            values.append(cotangent_float(scene, segments, end))
+    return values
+
+
+def _limit_at_endpoint(scene: Scene, arc: Arc, end: Point, segment: int) -> float:
+    """The limit of cot θ along an arc into an endpoint of the segment.
+
+    There θ depends on the direction alone: it is the angle between the segment and the direction
+    opposite to the one from which its endpoint is approached; that direction is taken from a point
+    of the arc 2^-60 of its length away.
+    """
+    low, high = _open_range(arc, fmpq(FAR) if arc.start is None or arc.end is None else fmpq(0))
+    step = (high - low) / FAR
+    near = _at(arc, low + step if end is arc.start else high - step)
+    bits = 4 * FIRST_PRECISION
+    with ctx.workprec(bits):
+        u, v = near.balls(bits)
+        return float(scene.cotangent(segment, u, v).mid())
+
+
+def _limit(scene: Scene, window: Window | None) -> fmpq:
+    """A bound that |u| does not exceed inside the window."""
+    if window is None:
+        xs = [float(p[0]) for segment in scene.segments for p in segment]
+        ys = [float(p[1]) for segment in scene.segments for p in segment]
+        width, height = max(xs) - min(xs), max(ys) - min(ys)
+        reach = max(width, height)
+        window = (min(xs) - reach, min(ys) - reach, max(xs) + reach, max(ys) + reach)
+    x = max(abs(Fraction(window[0])), abs(Fraction(window[2])))
+    y = max(abs(Fraction(window[1])), abs(Fraction(window[3])))
+    bound = (x + scene.shear * y) * scene.scale
+    return fmpq(bound.numerator, bound.denominator)
+
+
+def _open_range(arc: Arc, limit: fmpq) -> tuple[fmpq, fmpq]:
+    """Rationals just inside the u-range of an arc; unbounded ends reach beyond ±limit."""
+    bits = 4 * FIRST_PRECISION
+    with ctx.workprec(bits):
+        low = arc.start.number.ball(bits).upper().fmpq() if arc.start else None
+        high = arc.end.number.ball(bits).lower().fmpq() if arc.end else None
+    if low is None:
+        low = min(-limit, high if high is not None else -limit) - limit - 1
+    if high is None:
+        high = max(limit, low) + limit + 1
+    return low, high
+
+
+def _at(arc: Arc, u: fmpq) -> Point:
+    """The arc's point near u (u itself may belong to an event of another branch of its curve)."""
+    while True:
+        try:
+            return arc.at(u)
+        except NotGeneric:
+            u += fmpq(1, FAR)
+
+
+def _arc_polyline(
+    scene: Scene, arc: Arc, tolerance: float, limit: fmpq
+) -> list[tuple[float, float]]:
+    low, high = _open_range(arc, limit)
+
+    def point(s: float) -> tuple[float, float]:
+        """s ∈ [0, 1], crowded towards the ends, where the arc may be vertical."""
+        if s == 0 and arc.start is not None:
+            return scene.floats(arc.start)
+        if s == 1 and arc.end is not None:
+            return scene.floats(arc.end)
+        weight = Fraction((1 - math.cos(math.pi * s)) / 2)
+        u = low + (high - low) * fmpq(weight.numerator, weight.denominator)
+        return scene.floats(_at(arc, u))
+
+    def refine(
+        a: float, p: tuple[float, float], b: float, q: tuple[float, float], depth: int
+    ) -> list[tuple[float, float]]:
+        middle = (a + b) / 2
+        m = point(middle)
+        if (depth >= 2 and _distance_to_chord(m, p, q) <= tolerance) or depth == 24:
+            return [m, q]
+        left = refine(a, p, middle, m, depth + 1)
+        return left + refine(middle, m, b, q, depth + 1)
+
+    start, end = point(0.0), point(1.0)
+    return [start, *refine(0.0, start, 1.0, end, 0)]
+
+
+def _distance_to_chord(
+    m: tuple[float, float], p: tuple[float, float], q: tuple[float, float]
+) -> float:
+    length = math.dist(p, q)
+    if length == 0:
+        return math.dist(m, p)
+    along = ((m[0] - p[0]) * (q[0] - p[0]) + (m[1] - p[1]) * (q[1] - p[1])) / length**2
+    along = min(1.0, max(0.0, along))
+    return math.dist(m, (p[0] + along * (q[0] - p[0]), p[1] + along * (q[1] - p[1])))

@@ -28,7 +28,7 @@ COUNT_COLUMNS = (
     "loops",
     "components",
     "unbounded",
-    "boundary_ends",
+    "boundary_points",
     *NODE_KINDS,
 )
 

@@ -30,7 +30,7 @@ COLUMNS = (
     "loops",
     "components",
     "unbounded",
-    "boundary_ends",
+    "boundary_points",
     *NODE_KINDS,
     "degrees",
     "certified",
