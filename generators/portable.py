@@ -37,6 +37,7 @@ _SINE = (
     -6.688035109811468e-10,
     6.0669357311061955e-12,
 )
+_SQRT_HALF = 0.7071067811865476
 _SINE_TAIL = 6.123233995736766e-17  # π/2 minus its nearest double
 _COSINE = (
     1.0,
@@ -75,6 +76,10 @@ def unit_vectors(numerator: ArrayLike, denominator: float = 1.0) -> Array:
     tail = np.add(np.multiply(_horner(_SINE[1:], z), z), _SINE_TAIL)
     sine = np.add(np.multiply(x, _SINE[0]), np.multiply(x, tail))
     cosine = _horner(_COSINE, z)
+    # Half-way between two quarters either reduction serves; both must give the same point.
+    half_way = np.abs(x) == 0.5
+    sine = np.where(half_way, np.copysign(_SQRT_HALF, x), sine)
+    cosine = np.where(half_way, _SQRT_HALF, cosine)
     turn = np.mod(quarter, 4.0).astype(np.int64)
     odd = (turn & 1).astype(bool)
     along = np.where(odd, sine, cosine)
@@ -82,7 +87,7 @@ def unit_vectors(numerator: ArrayLike, denominator: float = 1.0) -> Array:
     out = np.empty((*np.shape(along), 2))
     out[..., 0] = np.where((turn == 1) | (turn == 2), -along, along)
     out[..., 1] = np.where(turn >= 2, -across, across)
-    return out
+    return np.add(out, 0.0)  # no negative zeros
 
 
 def polar(radius: ArrayLike, numerator: ArrayLike, denominator: float = 1.0) -> Array:

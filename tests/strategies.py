@@ -94,7 +94,7 @@ def _disjoint(
 ) -> Instance:
     segments: tuple[Segment, ...] = disjoint_subset(draw(candidates))[:most]
     if len(segments) < least:  # fill up with a row of short segments out of everybody's way
-        reach: list[Number] = [abs(z) for s in segments for p in s for z in p]
+        reach: list[Any] = [abs(z) for a, b in segments for z in (*a, *b)]
         far = 2 + max(reach, default=0)
         row = [((far + 2 * i, far), (far + 2 * i + 1, far)) for i in range(least - len(segments))]
         segments = (*segments, *row)

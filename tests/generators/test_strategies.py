@@ -121,9 +121,6 @@ def test_degenerate_configurations_do_occur():
     find(
         rational_segment_sets(),
         lambda instance: any(
-            isinstance(z, Fraction) and z.denominator > 1
-            for s in instance[1]
-            for p in s
-            for z in p
+            isinstance(z, Fraction) and z.denominator > 1 for s in instance[1] for p in s for z in p
         ),
     )
