@@ -81,6 +81,8 @@ class Family:
 
     ``growth`` declares how the number of Voronoi vertices grows with n in the kind's default
     domain (the kernel of a polygon, the plane for segments), "unknown" where nobody has said.
+    ``control`` says that this is a theorem or a derivation given with the family, so that an
+    analysis can be checked by it; elsewhere it is what experiments suggest.
     ``build(n, seed, **parameters)`` returns the coordinates; ``condition`` raises where the
     parameters and n do not go together.
     """
@@ -92,6 +94,7 @@ class Family:
     growth: str
     build: Callable[..., Array]
     parameters: tuple[Parameter, ...] = ()
+    control: bool = False
     random: bool = True
     smallest: int = 3
     largest: int = 4_000_000
@@ -100,7 +103,7 @@ class Family:
 
     def __post_init__(self) -> None:
         """A growth model is one of the known ones."""
-        if self.growth not in GROWTHS:
+        if self.growth not in GROWTHS or (self.control and self.growth == "unknown"):
             raise ValueError(f"{self.name}: growth {self.growth!r} is not one of {GROWTHS}")
 
     def resolve(self, params: Mapping[str, object]) -> dict[str, Value]:

@@ -153,6 +153,7 @@ GRID = Family(
     summary="n/2 horizontal and n/2 vertical segments whose extensions form a grid",
     source="Asano et al. 2006, Figure 3",
     growth="n^2",
+    control=True,
     build=grid,
     parameters=(
         Parameter(

@@ -111,6 +111,7 @@ ZIGZAG = Family(
     summary="star with n/2 equal spikes of fixed tilt: quadratic in the kernel",
     source="mirror-image weave, vertices ~ (n²/2)(1 − 2τ/π)",
     growth="n^2",
+    control=True,
     build=zigzag,
     parameters=(
         Parameter("tilt", float, 30.0, "tilt τ of the edges, in degrees", Interval(0.01, 89.0)),
@@ -128,6 +129,7 @@ CONVEX_WEAVE = Family(
     summary="convex polygon with alternating radii: quadratic in the kernel",
     source="mirror-image weave, convex version",
     growth="n^2",
+    control=True,
     build=convex_weave,
     parameters=(
         Parameter(

@@ -56,6 +56,11 @@ def test_a_family_is_documented(name):
         assert type(parameter.default) is parameter.type
 
 
+def test_there_is_a_control_for_each_kind_of_growth():
+    controls = {family.growth for family in FAMILIES.values() if family.control}
+    assert controls == {"1", "n", "n^2"}
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_the_coordinates_never_change(name):
     assert fingerprint(name, size(name), 7) == FINGERPRINTS[name]
