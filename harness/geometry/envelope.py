@@ -10,7 +10,6 @@ The functions are plain loops for :func:`harness.geometry.compiling.compiled`.  
 :func:`harness.geometry.sweep.turn`.  Questions to the exact side are triples (i, j, k):
 
 * k ≥ 0: on which side of line k is the point where lines i and j meet?
-* k = ``DIRECTIONS``: does edge j turn left from edge i?
 * k = ``SIDES``: on which side of line i does edge j start?
 """
 
@@ -22,8 +21,7 @@ Known = list[tuple[int, int, int, int]]
 Outcome = tuple[int, int, int, int, int]
 
 UNSURE: Final = 2
-DIRECTIONS: Final = -1
-SIDES: Final = -2
+SIDES: Final = -1
 
 _ROUND: Final = 5 * 2.0**-53
 _PRODUCT: Final = 3 * 2.0**-53
@@ -42,8 +40,6 @@ def filtered(a: float, b: float, slack: float) -> int:
     """The sign of A − B, where a and b are computed products of two coordinate differences.
 
     The bound 5u(|a| + |b|) + 18ε + 2⁻¹⁰⁶⁰ is derived in :func:`harness.geometry.sweep.turn`.
-    If ε = 0 and each product has a factor zero, the difference is zero exactly; products that
-    merely underflowed are excluded by the caller, which passes a = b = 0 in that case only.
     """
     bound = _ROUND * (abs(a) + abs(b)) + (slack if slack > 0.0 else _TINY)
     if a - b > bound:
@@ -51,25 +47,6 @@ def filtered(a: float, b: float, slack: float) -> int:
     if a - b < -bound:
         return -1
     return UNSURE
-
-
-def left_turn(
-    x: list[float],
-    y: list[float],
-    ex: list[float],
-    ey: list[float],
-    slack: float,
-    known: Known,
-    i: int,
-    j: int,
-) -> int:
-    """The sign of dᵢ × dⱼ for the directions of edges i and j; 0 without arithmetic for a zero."""
-    dx, dy = ex[i] - x[i], ey[i] - y[i]
-    fx, fy = ex[j] - x[j], ey[j] - y[j]
-    if slack == 0.0 and (dx == 0.0 or fy == 0.0) and (dy == 0.0 or fx == 0.0):
-        return 0
-    answer = filtered(dx * fy, dy * fx, slack)
-    return told(known, i, j, DIRECTIONS) if answer == UNSURE else answer
 
 
 def side_of_start(
@@ -82,11 +59,17 @@ def side_of_start(
     i: int,
     j: int,
 ) -> int:
-    """The side of line i on which edge j starts: 1 left, −1 right, 0 on it."""
+    """The side of line i on which edge j, of the same direction, starts: 1 left, −1 right, 0 on it.
+
+    Zeros that need no arithmetic: a factor zero in each product, or the edges share an end.
+    """
     dx, dy = ex[i] - x[i], ey[i] - y[i]
     fx, fy = x[j] - x[i], y[j] - y[i]
-    if slack == 0.0 and (dx == 0.0 or fy == 0.0) and (dy == 0.0 or fx == 0.0):
-        return 0
+    if slack == 0.0:
+        if (dx == 0.0 or fy == 0.0) and (dy == 0.0 or fx == 0.0):
+            return 0
+        if (x[j] == ex[i] and y[j] == ey[i]) or (ex[j] == x[i] and ey[j] == y[i]):
+            return 0
     answer = filtered(dx * fy, dy * fx, slack)
     return told(known, i, j, SIDES) if answer == UNSURE else answer
 
@@ -140,39 +123,6 @@ def side_of_corner(
     return told(known, i, j, k)
 
 
-def sort_directions(
-    start: int,
-    x: list[float],
-    y: list[float],
-    ex: list[float],
-    ey: list[float],
-    slack: float,
-    known: Known,
-    order: list[int],
-    same: list[bool],
-) -> Outcome:
-    """Sort ``order`` by direction, exactly: insertion from position ``start`` on.
-
-    ``order`` comes sorted by rounded angles, so that this takes linear time but for ties within
-    rounding.  ``same[k]`` becomes true if edges order[k] and order[k − 1] have one direction.
-    Returns (position, status, i, j, k) as :func:`harness.geometry.exact.resolve` wants it.
-    """
-    for position in range(start, len(order)):
-        edge, place, equal = order[position], position, False
-        while place > 0:
-            sign = left_turn(x, y, ex, ey, slack, known, order[place - 1], edge)
-            if sign == UNSURE:
-                return position, UNSURE, order[place - 1], edge, DIRECTIONS
-            if sign >= 0:
-                equal = sign == 0
-                break
-            place -= 1
-        for k in range(position, place, -1):
-            order[k], same[k] = order[k - 1], same[k - 1]
-        order[place], same[place] = edge, equal
-    return len(order), 0, 0, 0, 0
-
-
 def envelope(
     start: int,
     x: list[float],
@@ -188,8 +138,10 @@ def envelope(
 ) -> Outcome:
     """The edges whose lines bound the intersection along some length, in the sorted order.
 
-    They are stack[0], …, stack[size[0] − 1].  Of edges on one line the least index is kept.
-    O(m) for the m edges of ``order`` (Graham's scan, dual).
+    ``order`` is sorted by direction; ``same[k]`` says that edges order[k] and order[k − 1] have
+    one direction.  The envelope is stack[0], …, stack[size[0] − 1]; of edges on one line the
+    least index is kept.  Returns (position, status, i, j, k) as
+    :func:`harness.geometry.exact.resolve` wants it.  O(m) for m edges (Graham's scan, dual).
     """
     for position in range(start, len(order)):
         edge, top = order[position], size[0]
@@ -215,5 +167,5 @@ def envelope(
     return len(order), 0, 0, 0, 0
 
 
-#: What the two loops call, for the compiler.
-HELPERS = (told, filtered, left_turn, side_of_start, side_of_corner)
+#: What the loop calls, for the compiler.
+HELPERS = (told, filtered, side_of_start, side_of_corner)

@@ -10,6 +10,8 @@ from flint import fmpq
 
 #: A point with flint rationals; ``Any`` because flint has no type information.
 ExactPoint = tuple[Any, Any]
+#: What a filter says when rounding could change the sign.
+UNSURE: Final = 2
 
 
 def rational(value: float | Fraction) -> Any:
@@ -64,7 +66,3 @@ def resolve(
         if reached != event:
             event, known = reached, []
         known.append((i, j, k, exact(i, j, k)))
-
-
-#: What a filter says when rounding could change the sign.
-UNSURE: Final = 2

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from harness.geometry import envelope as loops
 from harness.geometry import exact
 from harness.geometry.compiling import LARGE, compiled
+from harness.geometry.directions import by_direction
 from harness.geometry.instance import Instance
 from harness.geometry.scaling import scaled
 
@@ -28,9 +29,15 @@ class HalfPlanes:
         """Start and end with flint rationals, the half-plane to the left."""
         found = self._ends.get(edge)
         if found is None:
-            a, b = self.instance.rational_segment(edge)
+            a, b = self._numbers(edge)
             found = self._ends[edge] = exact.point(a), exact.point(b)
         return found
+
+    def _numbers(self, edge: int) -> Any:
+        """Both endpoints as doubles if these are exact, else as fractions."""
+        if self.instance.exact is None:
+            return self.instance.segments[edge].tolist()
+        return self.instance.rational_segment(edge)
 
     def direction(self, edge: int) -> exact.ExactPoint:
         """The vector from start to end."""
@@ -69,29 +76,25 @@ class HalfPlanes:
         signs = [exact.sign(self.direction(i)[axis]) for i in range(self.instance.n)]
         return np.array(signs, dtype=np.int8)
 
-    def envelope(self, chosen: npt.NDArray[np.bool_]) -> list[int]:
-        """The chosen half-planes that bound their intersection, sorted by direction.
+    def envelope(self, heading: int) -> list[int]:
+        """Of the edges that run to the right (``heading`` 1) or to the left (−1), those whose
+        half-planes bound the intersection of all of them, sorted by direction.
 
-        All chosen edges must run to the right, or all to the left.  Exact; O(m log m) for m
-        chosen, of whom only those that rounding leaves open are looked at in exact arithmetic.
+        Exact; O(m log m) for m edges, of which only those that rounding leaves open are looked
+        at in exact arithmetic.
         """
         segments, slack = scaled(self.instance.segments, self.instance.exact is not None)
-        way = segments[:, 1] - segments[:, 0]
-        edges = np.flatnonzero(chosen)
-        flip = -1.0 if edges.size and way[edges[0], 0] < 0 else 1.0
-        angles = np.arctan2(flip * way[edges, 1], flip * way[edges, 0])
-        order = edges[np.argsort(angles, kind="stable")]
-        ends = tuple(segments[:, i, j].copy() for i in (0, 1) for j in (0, 1))
-        work = (order, np.zeros(len(order), dtype=np.bool_))
-        stack = (np.zeros(len(order), dtype=np.int64), np.zeros(1, dtype=np.int64))
-        data: list[Any] = [ends, work, stack]
+        edges = np.flatnonzero(self.headings() == heading)
+        way = segments[edges, 1] - segments[edges, 0]
+        order, same = by_direction(self.instance, edges, heading * way, slack)
+        ends: list[Any] = [segments[:, i, j].copy() for i in (0, 1) for j in (0, 1)]
+        stack, size = np.zeros(len(order), dtype=np.int64), np.zeros(1, dtype=np.int64)
+        state: list[Any] = [order, same, stack, size]
         compile_it = len(order) >= LARGE
         if not compile_it:
-            data = [[array.tolist() for array in group] for group in data]
-        self._run(loops.sort_directions, compile_it, slack, data[0], data[1])
-        self._run(loops.envelope, compile_it, slack, data[0], [*data[1], *data[2]])
-        kept, size = data[2]
-        return [int(edge) for edge in kept[: int(size[0])]]
+            ends, state = ([array.tolist() for array in group] for group in (ends, state))
+        self._run(loops.envelope, compile_it, slack, ends, state)
+        return [int(edge) for edge in state[2][: int(state[3][0])]]
 
     def _run(
         self,
@@ -113,8 +116,6 @@ class HalfPlanes:
 
     def _answer(self, i: int, j: int, k: int) -> int:
         """The exact answer to a question of :mod:`~harness.geometry.envelope`."""
-        if k == loops.DIRECTIONS:
-            return self.left_turn(i, j)
         if k == loops.SIDES:
             return self.side(i, self.ends(j)[0])
         return self.side(k, self.meeting(i, j))

@@ -164,8 +164,8 @@ class _Gap:
     def __init__(self, halfplanes: HalfPlanes) -> None:
         self.halfplanes = halfplanes
         headings = halfplanes.headings()
-        self.floor = _Chain(halfplanes, halfplanes.envelope(headings > 0))
-        self.roof = _Chain(halfplanes, halfplanes.envelope(headings < 0)[::-1])
+        self.floor = _Chain(halfplanes, halfplanes.envelope(1))
+        self.roof = _Chain(halfplanes, halfplanes.envelope(-1)[::-1])
         upright = np.where(headings == 0, halfplanes.headings(axis=1), 0)
         self.left_edge, self.left = self._vertical_bound(upright < 0, -1)
         self.right_edge, self.right = self._vertical_bound(upright > 0, 1)
