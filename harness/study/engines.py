@@ -8,6 +8,7 @@ is set; what is running then is stopped and will be run again.  Both engines run
 from __future__ import annotations
 
 import contextlib
+import importlib.util
 import multiprocessing
 import tempfile
 import threading
@@ -45,6 +46,7 @@ def run_local(
         finally:
             for attempt in running:
                 attempt.stop()
+            wait([attempt.future for attempt in running])
 
 
 def _harvest(running: list[Attempt]) -> Results:
@@ -54,6 +56,14 @@ def _harvest(running: list[Attempt]) -> Results:
         if attempt.future.done():
             running.remove(attempt)
             yield attempt.task, attempt.outcome()
+
+
+def check_dask() -> None:
+    """Raise UserError if the Dask engine is not installed."""
+    if importlib.util.find_spec("distributed") is None:
+        raise UserError(
+            "--engine dask needs the package distributed: pip install 'angular-voronoi[dask]'"
+        )
 
 
 def run_dask(
@@ -68,8 +78,8 @@ def run_dask(
 
     A Dask worker only supervises; each task still has its own process.  On a stop, tasks that
     run on a remote worker end there, at the latest at their time limit, and their results are
-    dropped.  Raises UserError if ``distributed`` is not installed, the scheduler does not
-    answer, or the workers may not start processes.
+    dropped.  Raises UserError if the scheduler does not answer, or the workers may not start
+    processes; call ``check_dask`` first.
     """
     with _dask_client(jobs, scheduler) as (client, as_completed):
         _halt.clear()
@@ -131,12 +141,8 @@ def _arrived(future: Any) -> Outcome:
 @contextlib.contextmanager
 def _dask_client(jobs: int, scheduler: str | None) -> Iterator[tuple[Any, Any]]:
     """A client of the scheduler, or of a local cluster of threads that ends with it."""
-    try:
-        import distributed
-    except ImportError:
-        raise UserError(
-            "--engine dask needs the package distributed: pip install 'angular-voronoi[dask]'"
-        ) from None
+    import distributed
+
     with contextlib.ExitStack() as stack:
         address: Any = scheduler
         if scheduler is None:

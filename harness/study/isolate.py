@@ -17,9 +17,10 @@ import os
 import re
 import signal
 import tempfile
+import time
 import traceback
 from collections.abc import Callable, Iterator
-from multiprocessing import forkserver
+from multiprocessing import forkserver, resource_tracker
 from pathlib import Path
 from typing import Any
 
@@ -87,12 +88,15 @@ class Attempt:
                 process.kill()
 
     def stop(self) -> None:
-        """Kill the process, if it is still there; its outcome is lost."""
-        self.future.cancel()
-        process = self._find_process()
-        if process is not None:
+        """Kill the process, if it is still there; its outcome is lost.
+
+        The future is left alone: Pebble completes it, and would trip over a cancelled one.
+        """
+        while not self.future.done() and self._find_process() is None:
+            time.sleep(TICK / 10)
+        if self._process is not None:
             with contextlib.suppress(psutil.Error):
-                process.kill()
+                self._process.kill()
 
     def outcome(self) -> Outcome:
         """How the task ended; ask once, when ``future`` is done."""
@@ -221,6 +225,7 @@ def _server_context() -> Any:
     """The context whose processes are forked from a clean, warm server; starts the server."""
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload(["pebble", __name__, "harness.study.preload"])
+    resource_tracker.ensure_running()  # before: starting it would undo the block on interrupts
     with _one_thread_each(), _interrupts_blocked():
         forkserver.ensure_running()
     return context

@@ -23,7 +23,7 @@ from pathlib import Path
 from typing import Literal
 
 from harness.errors import UserError
-from harness.study.engines import Results, run_dask, run_local
+from harness.study.engines import Results, check_dask, run_dask, run_local
 from harness.study.interrupt import interruptible
 from harness.study.isolate import Work
 from harness.study.lock import LOCK, locked
@@ -94,8 +94,10 @@ def run_study(
     is done for a task.  SIGINT, SIGTERM and SIGHUP end the run early with every row kept.
 
     Raises UserError if the directory is unfinished (mode "new"), is somebody else's, is being
-    written by another run or was written by a newer program.
+    written by another run or was written by a newer program; if Dask is not installed.
     """
+    if engine == "dask":
+        check_dask()
     _claim(directory)
     with locked(directory):
         if mode == "fresh":
