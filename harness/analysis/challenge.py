@@ -7,7 +7,7 @@ sizes is *too slow*, one whose prediction overshoots them is *too fast*.
 For a model, the **miss** is the mean over the challenge sizes of
 (observed − predicted)/max(observed, predicted, 1).  Its interval comes from repeating the whole
 procedure — resample, refit, predict, compare — and a model is rejected when the interval excludes
-zero.  Two sources of error are resampled:
+zero and the rejections fit the order of the models.  Two sources of error are resampled:
 
 * the replicates (bootstrap), where they differ;
 * the **wiggle**: what even the best of the candidate models, fitted to all sizes, leaves
@@ -21,7 +21,7 @@ A study holds dozens of verdicts, hence intervals of 99 %.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias
 
 import numpy as np
@@ -42,8 +42,8 @@ LEVEL = 0.99
 LEAST_SIZES = 5
 #: The largest size is at least this multiple of the smallest.
 LEAST_SPAN = 2.0
-#: Below this, a difference is floating-point noise.
-TINY = 1e-9
+#: Below this, a relative difference is floating-point noise, or far less than one object.
+TINY = 1e-6
 
 Finding: TypeAlias = Literal["kept", "too slow", "too fast", "withheld"]
 
@@ -65,9 +65,11 @@ class Trial:
     predicted_high: Floats
 
     @property
-    def rejected(self) -> bool:
-        """Whether the larger sizes contradict the model."""
-        return self.finding in ("too slow", "too fast")
+    def direction(self) -> Finding:
+        """On which side the model fails, withheld or not; "kept" if it does not."""
+        if self.finding == "kept":
+            return "kept"
+        return "too slow" if self.low > 0 else "too fast"
 
 
 @dataclass(frozen=True)
@@ -113,8 +115,28 @@ def challenge(series: Series, seed: int, rounds: int = RESAMPLES) -> Challenge:
     cut = fit_sizes(k)
     wiggle = _wiggle(series, float(n[cut - 1]))
     worlds = _worlds(series, wiggle, seed, rounds)
-    trials = tuple(_trial(model, series, worlds, cut) for model in MODELS)
-    return Challenge(n[:cut], n[cut:], wiggle, trials)
+    trials = [_trial(model, series, worlds, cut) for model in MODELS]
+    return Challenge(n[:cut], n[cut:], wiggle, tuple(_in_order(trials)))
+
+
+def _in_order(trials: list[Trial]) -> list[Trial]:
+    """Keep only rejections that agree with the order of the models.
+
+    Counts for which n log n is too slow cannot be linear: so "too slow" stands only if every
+    slower model is too slow as well, and "too fast" only if every faster one is too fast.  What
+    survives is therefore always a run of neighbouring models.
+    """
+    slow = fast = True
+    kept: list[Trial] = list(trials)
+    for rank, trial in enumerate(trials):
+        slow = slow and trial.direction == "too slow"
+        if trial.direction == "too slow" and not slow:
+            kept[rank] = replace(trial, finding="kept")
+    for rank, trial in reversed(list(enumerate(trials))):
+        fast = fast and trial.direction == "too fast"
+        if trial.direction == "too fast" and not fast:
+            kept[rank] = replace(trial, finding="kept")
+    return kept
 
 
 def _wiggle(series: Series, reference: float) -> float:

@@ -78,7 +78,9 @@ def fit(columns: Floats, values: Floats, weights: Floats) -> Floats:
     moments = (values * weights) @ weighted
     # The inverse of a 2×2 matrix, written out: this is the innermost step of every resampling.
     adjugate = np.array([[gram[1, 1], -gram[0, 1]], [-gram[1, 0], gram[0, 0]]])
-    free = moments @ adjugate / (gram[0, 0] * gram[1, 1] - gram[0, 1] * gram[1, 0])
+    determinant = gram[0, 0] * gram[1, 1] - gram[0, 1] * gram[1, 0]
+    independent = determinant > 1e-12 * gram[0, 0] * gram[1, 1]
+    free = moments @ adjugate / determinant if independent else np.full_like(moments, -1.0)
     edges = np.maximum(moments / gram.diagonal(), 0.0)
     gains = edges * moments  # how much each single column lowers the sum of squares
     better = gains[:, 0] >= gains[:, 1]
@@ -88,15 +90,16 @@ def fit(columns: Floats, values: Floats, weights: Floats) -> Floats:
 
 
 def relative_weights(columns: Floats, values: Floats) -> Floats:
-    """Weights that make the fit care about relative error: 1/max(fitted count, 1).
+    """Weights with which least squares minimise the sum of squares of ``relative_miss``.
 
-    Taken from the fit and not from the data, so that a count that happens to be low does not
-    gain weight by it; three rounds of reweighting settle.  ``values`` is (k,).
+    That is 1/max(observed, fitted, 1), found by reweighting; three rounds settle.  With the
+    observed count alone, one that happens to be low would gain weight by it; with the fitted one
+    alone, a hopeless fit near zero would.  ``values`` is (k,).
     """
     weights = 1.0 / np.maximum(values, 1.0)
     for _ in range(3):
         fitted = columns @ fit(columns, values[None, :], weights)[0]
-        weights = 1.0 / np.maximum(fitted, 1.0)
+        weights = 1.0 / np.maximum(np.maximum(values, fitted), 1.0)
     return weights
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
-from harness.analysis.challenge import Challenge, Trial
+from harness.analysis.challenge import Challenge
 from harness.analysis.models import BY_NAME, LINEAR, MODELS, Model
 
 Kind: TypeAlias = Literal["single", "several", "between", "undecided"]
@@ -85,16 +85,12 @@ def _label(
         return "single", alive[0].symbol
     if alive:
         return "several", _alternatives(alive)
-    # None survived: say between which two the counts lie, if the rejections agree on that.
-    slowest_fast = min((MODELS.index(model) for model in fast), default=len(MODELS))
-    fastest_slow = max((MODELS.index(model) for model in slow), default=-1)
-    if fastest_slow > slowest_fast:
-        return "between", "none of the models"
-    if fastest_slow < 0:
-        return "between", "slower than 1"
-    if slowest_fast == len(MODELS):
-        return "between", f"faster than {MODELS[-1].symbol}"
-    return "between", f"between {MODELS[fastest_slow].symbol} and {MODELS[slowest_fast].symbol}"
+    # None survived: the too slow ones end where the too fast ones begin.
+    if not slow:
+        return "between", f"slower than {fast[0].symbol}"
+    if not fast:
+        return "between", f"faster than {slow[-1].symbol}"
+    return "between", f"between {slow[-1].symbol} and {fast[0].symbol}"
 
 
 def _sentence(
@@ -132,15 +128,6 @@ def _list(models: tuple[Model, ...]) -> str:
 
 
 def _alternatives(models: tuple[Model, ...]) -> str:
-    """“1 or log n”; a run of three or more is “1 … n log n”."""
-    symbols = [model.symbol for model in models]
-    ranks = [MODELS.index(model) for model in models]
-    if len(ranks) > 2 and ranks[-1] - ranks[0] == len(ranks) - 1:
-        return f"{symbols[0]} … {symbols[-1]}"
-    return " or ".join(symbols)
-
-
-def best(trials: tuple[Trial, ...]) -> Trial | None:
-    """The surviving trial that missed least, None if none survived."""
-    alive = [trial for trial in trials if not trial.rejected]
-    return min(alive, key=lambda trial: abs(trial.miss)) if alive else None
+    """“1 or log n”; three or more, always a run of neighbours, are “1 … n log n”."""
+    joint = " or " if len(models) == 2 else " … "
+    return f"{models[0].symbol}{joint}{models[-1].symbol}"
