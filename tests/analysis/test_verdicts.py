@@ -39,7 +39,7 @@ def curve(model: Model, n: tuple[int, ...], level: float, correction: float = 0.
 
 @every_model
 @pytest.mark.parametrize("n", [QUICK, DOUBLING], ids=["quick", "doubling"])
-@given(level=st.floats(1e4, 1e9), correction=st.floats(-0.3, 0.6))
+@given(level=st.floats(1e4, 1e9), correction=st.floats(-0.2, 0.6))
 def test_exact_growth_with_a_lower_order_term_is_called_right(
     model: Model, n: tuple[int, ...], level: float, correction: float
 ) -> None:
