@@ -211,6 +211,24 @@ class Point:
         cross = self.numerator * other.denominator - other.numerator * self.denominator
         return bool(cross % self.number.modulus == 0)
 
+    def compare_v(self, other: Point) -> int:
+        """The sign of v − v(other) for two points with the same number."""
+        if self.is_same_place(other):
+            return 0
+        for bits in precisions():
+            with ctx.workprec(bits):
+                sign = ball_sign(self.balls(bits)[1] - other.balls(bits)[1])
+            if sign is not None:
+                return sign
+        raise AssertionError  # precisions() raises first
+
+    def multiplicity_on(self, f: Polynomial) -> int:
+        """How often v is a zero of f on the vertical line through this point."""
+        order = 0
+        while self.sign(f) == 0:
+            f, order = f.derivative, order + 1
+        return order
+
     def is_zero_of(self, polynomial: Polynomial) -> bool:
         """Decide exactly whether the polynomial vanishes here."""
         modulus = self.number.modulus

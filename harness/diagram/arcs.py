@@ -66,6 +66,31 @@ class Slabs:
         """The slab in whose interior or on whose right border p's vertical line runs."""
         return sum(compare_numbers(event.number, p.number) < 0 for event in self.events)
 
+    def is_event(self, p: Point) -> bool:
+        """Whether p is one of the curve's events."""
+        return any(e.number.key == p.number.key and e.is_same_place(p) for e in self.events)
+
+    def branch_of(self, p: Point, slab: int) -> int:
+        """The position in ``slab``, which ends at or after p, of the branch that runs through p.
+
+        p is a point of the curve but no event; yet an event e may share its u.  Then f on that
+        line is a(v − e)^m (v − v(p)) or has one further zero q, and a·(p − e)^m·(p − q) is the
+        derivative at p.
+        """
+        f = self.polynomial
+        beside = [e for e in self.events if e.number.key == p.number.key]
+        if not beside:
+            return branches_around(f, p, on_curve=True)[0]
+        side = p.compare_v(beside[0])
+        multiplicity = beside[0].multiplicity_on(f)
+        lead = 1 if f.rows[-1](0) > 0 else -1
+        other = 0
+        if f.degree_v - multiplicity == 2:
+            other = p.sign(f.derivative) * lead * (side if multiplicity % 2 else 1)
+        if side < 0:
+            return int(other > 0)
+        return f.roots_on_fibre(self.sample(slab)) - 1 - int(other < 0)
+
 
 @dataclass(eq=False)
 class Arc:
@@ -95,13 +120,10 @@ class Arc:
 
     def contains(self, p: Point) -> bool:
         """Whether p, a point of the arc's curve, is an inner point of the arc."""
-        if p.number.key in {event.number.key for event in self.slabs.events}:
+        if self.slabs.is_event(p):
             return False  # arcs are cut at the events that lie on them
-        branch = self.branch.get(self.slabs.slab_ending_at(p))
-        return (
-            branch is not None
-            and branch == branches_around(self.slabs.polynomial, p, on_curve=True)[0]
-        )
+        slab = self.slabs.slab_ending_at(p)
+        return self.branch.get(slab) == self.slabs.branch_of(p, slab)
 
     def is_below(self, p: Point) -> bool:
         """Whether the arc passes strictly below p, a point with u within the arc but not on it."""

@@ -113,7 +113,7 @@ def find_events(scene: Scene, region: Region, curves: list[Component], register:
         for p in special:
             if _vanishes(curve.polynomial, p):
                 curve.add_event(p)
-    known = {p.number.key for p in special}
+    known = {p.number.key: p for p in special}
     meetings = itertools.chain(
         _meetings(scene, region, curves, known), _wall_events(scene, region, curves, known)
     )
@@ -172,8 +172,13 @@ def _vanishes(polynomial: Polynomial, p: Point) -> bool:
     return bool(value == 0)
 
 
+def _is_among(known: dict[Key, Point], p: Point) -> bool:
+    """Whether p is one of the known points (and does not merely share u with one)."""
+    return p.number.key in known and known[p.number.key].is_same_place(p)
+
+
 def _meetings(
-    scene: Scene, region: Region, curves: list[Component], known: set[Key]
+    scene: Scene, region: Region, curves: list[Component], known: dict[Key, Point]
 ) -> Iterator[Point]:
     """The points where two components with a common segment meet and their tie is the best."""
     by_pair: dict[tuple[int, int], list[tuple[int, Component]]] = defaultdict(list)
@@ -192,7 +197,7 @@ def _meetings(
             return not region.surely_outside(u, v) and scene.may_win(tied[0], u, v)
 
         for p in intersect(f.polynomial, g.polynomial, region.strip, plausible):
-            if p.number.key in known or region.side(p) < 0:
+            if _is_among(known, p) or region.side(p) < 0:
                 continue
             if len(scene.winners(p)) > 1:
                 yield p
@@ -207,7 +212,7 @@ def _meetings(
 
 
 def _wall_events(
-    scene: Scene, region: Region, curves: list[Component], known: set[Key]
+    scene: Scene, region: Region, curves: list[Component], known: dict[Key, Point]
 ) -> Iterator[Point]:
     """The points of the domain's boundary at which a component's tie is the best of all."""
     for (k, wall), curve in itertools.product(enumerate(region.walls), curves):
@@ -218,7 +223,7 @@ def _wall_events(
             return any(scene.may_win(i, u, v) for i, _, _ in curve.ties)
 
         for p in intersect(curve.polynomial, wall, region.strip, plausible):
-            if p.number.key in known or not region.wall_contains(k, p):
+            if _is_among(known, p) or not region.wall_contains(k, p):
                 continue
             winners = scene.winners(p)
             if any(i in winners and j in winners for i, j, _ in curve.ties):

@@ -31,7 +31,8 @@ class Counts:
     it counts edge ends (two edges may end at one boundary point; ``boundary_points`` counts
     those).  So Σ degree · count over the vertices, plus the degrees of endpoint nodes, plus
     boundary, plus infinity is twice the number of edges that are no loops.
-    ``degrees`` maps the degree of a vertex to the number of vertices that have it.  ``components`` are the connected components of
+    ``degrees`` maps the degree of a vertex to the number of vertices that have it.
+    ``components`` are the connected components of
     edges ∪ nodes ∪ boundary of the domain; a loop (closed edge without a node) is one of its own.
     ``certified`` says that every combinatorial decision behind the record was exact.
     """

@@ -32,7 +32,7 @@ from harness.diagram.scene import Scene
 from harness.diagram.sweep import sweep
 from harness.geometry.instance import Instance
 
-SHEARS = (5, 97, 10_007, 299_993, 15_485_863, 1_000_000_007)
+SHEARS = (1_009, 10_007, 299_993, 15_485_863, 1_000_000_007)
 
 
 def build_reference(
@@ -66,7 +66,10 @@ def _build(
     arcs = [arc for curve in curves for arc in bisector_arcs(scene, region, curve, region.strip)]
     ends = {p.number.key: p for arc in arcs for p in (arc.start, arc.end) if p is not None}
     ends |= {p.number.key: register.canonical(p) for p in region.corners}
-    swept = sweep([*arcs, *wall_arcs(region, list(ends.values()), region.strip)])
+    endpoints = frozenset(
+        scene.sheared(point).coordinates for segment in scene.segments for point in segment
+    )
+    swept = sweep([*arcs, *wall_arcs(region, list(ends.values()), region.strip)], endpoints)
     parts = Assembly(scene, region, swept)
     return PlanarMap(
         instance=instance,

@@ -54,8 +54,11 @@ class SweepError(ArithmeticError):
     """The arcs do not form a subdivision of the plane: a defect of the builder."""
 
 
-def sweep(arcs: list[Arc]) -> Sweep:
-    """Sweep over interior-disjoint arcs; O((N + A) log A) exact comparisons."""
+def sweep(arcs: list[Arc], avoid: frozenset[tuple[fmpq, fmpq]] = frozenset()) -> Sweep:
+    """Sweep over interior-disjoint arcs; O((N + A) log A) exact comparisons.
+
+    ``avoid``: points (u, v) that must not be taken as samples.
+    """
     junctions = _junctions(arcs)
     faces, numbering = DisjointSet([0]), itertools.count(1)
     status = sorted_on_line([arc for arc in arcs if arc.start is None], _before(junctions))
@@ -78,7 +81,7 @@ def sweep(arcs: list[Arc]) -> Sweep:
         gaps = open_gaps(status, 0, fresh())
     first = list(status)
     unbounded = set(gaps)
-    samples += _gap_samples(status, gaps, _before(junctions), range(len(gaps)))
+    samples += _gap_samples(status, gaps, _before(junctions), range(len(gaps)), avoid)
     for k, junction in enumerate(junctions):
         low = _position(status, junction)
         high = low + len(junction.left)
@@ -96,7 +99,7 @@ def sweep(arcs: list[Arc]) -> Sweep:
             bounds = [below]
         status[low:high] = junction.right
         gaps[low : high + 1] = bounds
-        samples += _gap_samples(status, gaps, u, range(low, low + len(bounds)))
+        samples += _gap_samples(status, gaps, u, range(low, low + len(bounds)), avoid)
     unbounded |= set(gaps)
     return Sweep(
         junctions,
@@ -148,12 +151,19 @@ def _position(status: list[Arc], junction: Junction) -> int:
 
 
 def _gap_samples(
-    status: list[Arc], gaps: list[int], u: fmpq, which: range
+    status: list[Arc],
+    gaps: list[int],
+    u: fmpq,
+    which: range,
+    avoid: frozenset[tuple[fmpq, fmpq]],
 ) -> list[tuple[fmpq, fmpq, int]]:
     """A rational point on u = const inside each of the given gaps."""
     samples = []
     for k in which:
         below = status[k - 1].at(u) if k > 0 else None
         above = status[k].at(u) if k < len(status) else None
-        samples.append((u, rational_between(below, above), gaps[k]))
+        v = rational_between(below, above)
+        while (u, v) in avoid:
+            v = rational_between(below, Point.rational(v, v))
+        samples.append((u, v, gaps[k]))
     return samples
