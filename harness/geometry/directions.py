@@ -39,30 +39,32 @@ def by_direction(
     edges = edges[rank]
     high = np.maximum.accumulate((angle + doubt)[rank])
     low = np.minimum.accumulate((angle - doubt)[rank][::-1])[::-1]
-    close = np.flatnonzero(high[:-1] >= low[1:])  # positions k that k + 1 may precede
+    close = high[:-1] >= low[1:]  # whether position k + 1 may come before k
     same = np.zeros(len(edges), dtype=np.bool_)
-    for run in np.split(close, np.flatnonzero(np.diff(close) > 1) + 1):
-        if run.size:
-            part = slice(int(run[0]), int(run[-1]) + 2)
-            edges[part], same[part] = _by_slope(instance, edges[part])
+    run = np.concatenate([[0], np.cumsum(~close)])  # runs of positions that may be out of order
+    open_ = np.flatnonzero(np.append(close, False) | np.append(False, close))
+    if open_.size:
+        edges[open_], same[open_] = _by_slope(instance, edges[open_], run[open_].tolist())
     return edges, same
 
 
-def _by_slope(instance: Instance, edges: Ints) -> tuple[Ints, list[bool]]:
-    """Edges of almost one direction sorted by their exact slopes, and which are ties."""
+def _by_slope(instance: Instance, edges: Ints, run: list[int]) -> tuple[Ints, list[bool]]:
+    """The edges of every run sorted by their exact slopes, and which are ties."""
     slopes = _slopes(instance, edges)
-    order = sorted(range(len(slopes)), key=slopes.__getitem__)
-    ordered = [slopes[k] for k in order]
-    return edges[order], [False, *(a == b for a, b in pairwise(ordered))]
+    keys = list(zip(run, slopes, strict=True))
+    order = sorted(range(len(keys)), key=keys.__getitem__)
+    return edges[order], [False, *(keys[i] == keys[j] for i, j in pairwise(order))]
 
 
 def _slopes(instance: Instance, edges: Ints) -> list[Any]:
     """The exact slopes; edges whose coordinate differences are equal doubles share one."""
+    floats, segments = instance.exact is None, instance.segments
     known: dict[Any, Any] = {}
     slopes = []
     for edge, key in zip(edges.tolist(), _keys(instance, edges), strict=True):
         if key not in known:
-            (ax, ay), (bx, by) = (exact.point(p) for p in instance.rational_segment(edge))
+            ends = segments[edge].tolist() if floats else instance.rational_segment(edge)
+            (ax, ay), (bx, by) = map(exact.point, ends)
             known[key] = (by - ay) / (bx - ax)
         slopes.append(known[key])
     return slopes

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -131,8 +131,7 @@ class Instance:
     def exact_vertex(self, index: int) -> Point:
         """Vertex ``index`` of a polygon, exactly."""
         if self.exact is not None:
-            point: Any = self.exact[index]
-            return point  # type: ignore[no-any-return]  # vertices, since this is a polygon
+            return cast(Point, self.exact[index])  # vertices, since this is a polygon
         x, y = self.floats[index].tolist()
         return Fraction(x), Fraction(y)
 
@@ -150,8 +149,7 @@ class Instance:
         """Segment ``index`` with exact endpoints, directed as in :attr:`segments`."""
         if self.kind == "segments":
             if self.exact is not None:
-                segment: Any = self.exact[index]
-                return segment  # type: ignore[no-any-return]  # pairs, since these are segments
+                return cast(tuple[Point, Point], self.exact[index])
             (ax, ay), (bx, by) = self.floats[index].tolist()
             return (Fraction(ax), Fraction(ay)), (Fraction(bx), Fraction(by))
         start, end = self.exact_vertex(index), self.exact_vertex((index + 1) % self.n)
