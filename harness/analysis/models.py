@@ -111,11 +111,3 @@ def relative_miss(observed: Floats, predicted: Floats) -> Floats:
     """
     scale: Floats = np.maximum(np.maximum(observed, predicted), 1.0)
     return (observed - predicted) / scale
-
-
-def fitted_curve(model: Model, n: Floats, values: Floats, at: Floats) -> Floats:
-    """The model fitted to ``values`` at all sizes ``n``, evaluated at ``at``."""
-    columns = extreme_curves(model, n, float(n[-1]))
-    coefficients = fit(columns, values[None, :], relative_weights(columns, values))[0]
-    curve: Floats = extreme_curves(model, at, float(n[-1])) @ coefficients
-    return curve

@@ -55,7 +55,7 @@ def power_law(n: Floats, values: Floats, draws: Floats | None) -> PowerLaw:
         return PowerLaw(None, None, None, None, f"undefined: {why}")
     x = np.log(n[start:])
     x = (x - x.mean()) / ((x - x.mean()) ** 2).sum()
-    exponent = float(np.log(values[start:]) @ x)
+    exponent = round(float(np.log(values[start:]) @ x), 12)  # level counts: 0, not 1e-16
     note = "" if start == 0 else f"fitted from n = {n[start]:g}, after the last count of zero"
     if draws is None:
         note = "; ".join(filter(None, [note, "no bootstrap: the replicates agree"]))

@@ -63,13 +63,13 @@ def _complexity(
         edge = np.sqrt(challenged.min() * maximum["n"][maximum["fitted"].astype(bool)].max())
         axes.axvspan(edge, maximum["n"].max() * 1.12, color=PALE, zorder=0)
         axes.annotate(
-            "challenge",
-            (0.985, 0.02),
+            "shaded: challenge",
+            (1.0, 1.015),
             xycoords="axes fraction",
             ha="right",
             va="bottom",
             color=GREY,
-            fontsize=7.5,
+            fontsize=8,
         )
     if len(rows) <= DOTS:
         axes.plot(rows["n"], rows[count], ".", color=GREY, alpha=0.35, ms=3, zorder=1)
@@ -199,12 +199,12 @@ def _misses(axes: Axes, trials: pd.DataFrame, shown: dict[str, str]) -> None:
             )
 
 
-COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, BLACK)
+COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, BLACK, GREY)
 MARKERS = ("o", "s", "^", "D", "v")
 LINES = ("-", "--", "-.", ":")
 #: Distinct pairs of colour and marker: no curve is known by its colour alone.
 STYLES = [
-    (COLOURS[index % 7], MARKERS[index % 5], LINES[index // 35]) for index in range(7 * 5 * 4)
+    (COLOURS[index % 8], MARKERS[index % 5], LINES[index // 40]) for index in range(8 * 5 * 4)
 ]
 
 

@@ -48,17 +48,15 @@ def plain(value: object) -> str:
 
 
 def number(value: float | None, digits: int = 3) -> str:
-    """A number for a table: integers whole, others to ``digits`` significant digits."""
+    """A number for a table: whole if it is, else to ``digits`` significant digits."""
     if value is None or math.isnan(value):
         return "–"
     if math.isinf(value):
         return "∞" if value > 0 else "−∞"
-    if float(value).is_integer() and abs(value) < 1e15:
-        return f"{int(value)}".replace("-", "−")
-    if abs(value) >= 10**digits:
-        return f"{value:.0f}".replace("-", "−")
+    if abs(value) < 1e15 and (float(value).is_integer() or abs(value) >= 10**digits):
+        return f"{value + 0.0:.0f}".replace("-", "−")  # + 0.0: no negative zero
     text = f"{value:.{digits}g}"
-    if "e" in text:  # too small for a table of decimals
+    if "e" in text:  # too small, or too large, for a table of decimals
         mantissa, exponent = text.split("e")
         return f"{mantissa}·10^{int(exponent)}".replace("-", "−")
     return text.replace("-", "−")

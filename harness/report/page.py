@@ -120,8 +120,8 @@ def _overviews(download: Download) -> Iterator[dict[str, str]]:
 
 
 def _verdict_table(study: StudyGrowth) -> Table:
-    head = ["curve", "n", "repl.", "vertices: maximum", "vertices: median", "exponent (max.)"]
-    head += ["linear?", "edges: max.", "cells: max.", "no count"]
+    head = ["curve", "n", "repl.", "vertices, max.", "vertices, median", "exponent (max.)"]
+    head += ["max. against linear", "edges, max.", "cells, max.", "failed"]
     rows = []
     for analysed, label in zip(study.groups, study.labels, strict=True):
         group, curves = analysed.group, analysed.curves

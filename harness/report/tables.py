@@ -9,11 +9,10 @@ from __future__ import annotations
 import io
 from collections.abc import Sequence
 
-import numpy as np
 import pandas as pd
 
 from harness.analysis import HEADLINES, MODELS, STATISTICS, Group, GroupGrowth, Growth
-from harness.analysis.models import fitted_curve
+from harness.analysis.models import Floats
 
 #: Column names of the models' ratios.
 RATIO = {
@@ -55,7 +54,7 @@ def curves(analysed: GroupGrowth) -> pd.DataFrame:
     ``value`` is the statistic over the counted tasks, ``lower``/``upper`` its 95 % bootstrap
     interval (empty: nothing to resample), ``at_least``/``at_most`` what it can be if unseen tasks
     are taken into account, ``per_…`` the ratio to each model, ``slope`` the local slope from the
-    size before, ``declared`` the declared model fitted to the values.
+    size before, ``declared`` the declared model, scaled to the value at the largest size.
     """
     records = []
     for headline in HEADLINES:
@@ -92,12 +91,15 @@ def curves(analysed: GroupGrowth) -> pd.DataFrame:
     return pd.DataFrame.from_records(records, columns=columns)
 
 
-def _declared_line(analysed: GroupGrowth, curve: Growth) -> np.ndarray | None:
-    if analysed.declared is None or curve.headline != "vertices" or len(curve.n) < 2:
+def _declared_line(analysed: GroupGrowth, curve: Growth) -> Floats | None:
+    """The declared leading term alone, through the value at the largest size: for the eye."""
+    if analysed.declared is None or curve.headline != "vertices" or not len(curve.n):
         return None
-    if curve.n[0] <= 1:
+    leading = analysed.declared.model.leading(curve.n)
+    if leading[-1] <= 0 or curve.observed[-1] <= 0:
         return None
-    return fitted_curve(analysed.declared.model, curve.n, curve.observed, curve.n)
+    line: Floats = curve.observed[-1] * leading / leading[-1]
+    return line
 
 
 def trials(analysed: GroupGrowth) -> pd.DataFrame:

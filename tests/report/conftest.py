@@ -1,0 +1,16 @@
+"""Fewer planted samples than a real report takes: these tests are about the page."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+from harness.analysis import planted
+
+
+@pytest.fixture(autouse=True, scope="session")
+def few_planted_samples() -> Iterator[None]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(planted, "TRIALS", 4)
+        yield
