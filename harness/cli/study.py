@@ -8,6 +8,8 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from harness.errors import UserError
+
 if TYPE_CHECKING:
     from harness.study.runner import Summary
     from harness.study.study_file import Study
@@ -19,11 +21,32 @@ DESCRIPTION = """\
 Run the tasks of a study file (TOML), or of a built-in study, and write the report.  Every finished
 task is a row in DIR/rows.csv at once; an interrupted or killed run continues with --resume."""
 
+EPILOG = """\
+a study file:
+  name = "growth"                 # results go to results/growth/
+  time_limit = 60                 # seconds for one task (default 300)
+  memory_limit = 2048             # MiB for one task (default 2048)
+  base_seed = 0                   # another number, other random instances (default 0)
+  [[sweep]]                       # any number of these; lists multiply
+  family = "zigzag"               # see avd families
+  n = { from = 8, to = 64, factor = 2 }         # or a number, or a list
+  replicates = 30                 # random instances of each kind (default 1)
+  params = { tilt = [20, 30] }    # the family's parameters
+  domain = ["kernel", "plane"]    # default: kernel for polygons, plane for segments
+  objective = "smallest"          # or "largest"
+  builder = "reference"
+"""
+
 
 def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add the verb ``study``."""
     parser = subparsers.add_parser(
-        "study", help="run a study and report on it", description=DESCRIPTION, allow_abbrev=False
+        "study",
+        help="run a study and report on it",
+        description=DESCRIPTION,
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
     )
     parser.add_argument(
         "study", metavar="STUDY", nargs="?", help="a study file, or the name of a built-in study"
@@ -66,6 +89,9 @@ def run(args: argparse.Namespace) -> int:
         args.usage_error("name a study file or a built-in study (--list shows them)")
     if args.scheduler is not None and args.engine != "dask":
         args.usage_error("--scheduler needs --engine dask")
+
+    if sys.platform == "win32":
+        raise UserError("avd study needs a POSIX system (Linux, macOS): it limits memory")
 
     from harness.study.builtin import find_study
 
@@ -161,7 +187,6 @@ def _mode(name: str) -> dict[str, Any]:
 
 
 def _positive(text: str) -> int:
-    value = int(text)
-    if value < 1:
-        raise argparse.ArgumentTypeError(f"{value} must be at least 1")
-    return value
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"{text!r} must be a whole number, at least 1")
+    return int(text)

@@ -8,6 +8,7 @@ whether it was interrupted; a run that was killed has no end).
 
 from __future__ import annotations
 
+import filecmp
 import json
 import platform
 import subprocess
@@ -42,6 +43,8 @@ DISTRIBUTIONS = (
     "distributed",
 )
 """The libraries whose versions are recorded, if they are installed."""
+
+PACKAGES = ("harness", "generators")
 
 Manifest = dict[str, Any]
 
@@ -153,15 +156,26 @@ def _cpu() -> str:
 
 def git_commit() -> dict[str, Any] | None:
     """The commit this package is run from, and whether files differ from it; None if unknown."""
-    here = Path(__file__).resolve().parent
+    root = Path(harness.__file__).resolve().parents[1]
     try:
-        top = Path(_git(here, "rev-parse", "--show-toplevel"))
-        if not (top / "harness" / "study" / Path(__file__).name).exists():
+        top = Path(_git(root, "rev-parse", "--show-toplevel"))
+        if not (top / "harness" / "study").is_dir():
             return None  # the package is installed inside somebody else's repository
-        dirty = _git(top, "status", "--porcelain", "--", "harness", "generators") != ""
+        dirty = _git(top, "status", "--porcelain", "--", *PACKAGES) != "" or _differ(root, top)
         return {"hash": _git(top, "rev-parse", "HEAD"), "dirty": dirty}
     except (OSError, subprocess.SubprocessError):
         return None
+
+
+def _differ(installed: Path, checkout: Path) -> bool:
+    """Whether the installed modules are others than those of the checkout around them."""
+    names = [
+        module.relative_to(installed)
+        for package in PACKAGES
+        for module in (installed / package).rglob("*.py")
+    ]
+    _, mismatch, missing = filecmp.cmpfiles(installed, checkout, names, shallow=False)
+    return bool(mismatch or missing)
 
 
 def _git(directory: Path, *arguments: str) -> str:

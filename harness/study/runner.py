@@ -29,6 +29,7 @@ from harness.study.isolate import Work
 from harness.study.lock import LOCK, locked
 from harness.study.manifest import MANIFEST, RunRecord, read_manifest
 from harness.study.outcome import Outcome, row_of
+from harness.study.processors import default_jobs
 from harness.study.progress import Progress
 from harness.study.schema import Record
 from harness.study.store import ASIDE, ROWS, RowFile, read_rows, replace, set_aside
@@ -66,13 +67,6 @@ class Summary:
     def failed(self) -> int:
         """Rows whose status is not "ok"."""
         return sum(self.statuses.values()) - self.statuses["ok"]
-
-
-def default_jobs() -> int:
-    """The processors this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 def run_study(

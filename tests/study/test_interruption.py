@@ -10,7 +10,7 @@ import subprocess
 import sys
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import psutil
@@ -50,7 +50,7 @@ def _runs(directory: Path) -> list[dict[str, object]]:
 
 
 @pytest.fixture(scope="module")
-def uninterrupted(tmp_path_factory: pytest.TempPathFactory) -> Iterator[list[dict[str, str]]]:
+def uninterrupted(tmp_path_factory: pytest.TempPathFactory) -> list[dict[str, str]]:
     """The rows of a run that nobody disturbs."""
     folder = tmp_path_factory.mktemp("uninterrupted")
     process = _start(folder / "results", folder / "log", "new")
@@ -59,7 +59,7 @@ def uninterrupted(tmp_path_factory: pytest.TempPathFactory) -> Iterator[list[dic
     rows = invariant_rows(folder / "results")
     assert len(rows) == len(study(TEXT).tasks)
     assert {row["status"] for row in rows} == {"ok", "error"}
-    yield rows
+    return rows
 
 
 def test_killed_at_random_moments_a_study_ends_with_the_same_rows(

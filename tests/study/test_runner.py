@@ -58,7 +58,7 @@ def test_an_unfinished_study_is_refused_with_the_command_that_continues(tmp_path
     rows = read_rows(tmp_path / ROWS)
     replace_rows(tmp_path / ROWS, rows[:5])
     before = (tmp_path / ROWS).read_bytes()
-    with pytest.raises(UserError, match="5 of the 12 tasks.*avd study x --resume.*--fresh"):
+    with pytest.raises(UserError, match=r"5 of the 12 tasks.*avd study x --resume.*--fresh"):
         _run(made, tmp_path, resume_command="avd study x --resume")
     assert (tmp_path / ROWS).read_bytes() == before
     summary = _run(made, tmp_path, "resume")

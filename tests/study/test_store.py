@@ -136,9 +136,12 @@ def test_rows_set_aside_are_never_lost(tmp_path: Path) -> None:
 
 
 def test_one_writer_at_a_time(tmp_path: Path) -> None:
-    with locked(tmp_path), pytest.raises(UserError, match="another run is writing"):
-        with locked(tmp_path):
-            pass
+    with (
+        locked(tmp_path),
+        pytest.raises(UserError, match="another run is writing"),
+        locked(tmp_path),
+    ):
+        pass
     with locked(tmp_path):
         pass  # free again
 

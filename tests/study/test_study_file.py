@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import itertools
 import json
+import textwrap
 from pathlib import Path
 
 import pytest
@@ -12,7 +13,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from generators import FAMILIES
+from harness.cli.study import EPILOG
 from harness.errors import UserError
+from harness.study import study_file
 from harness.study.builtin import builtin_studies, find_study
 from harness.study.study_file import parse_study, read_study
 from harness.study.task import SEED_RULE
@@ -191,6 +194,14 @@ def test_a_family_without_randomness_has_one_replicate() -> None:
     assert not FAMILIES["figure-2"].random
 
 
+def test_the_examples_in_help_and_documentation_are_studies() -> None:
+    documented = (study_file.__doc__ or "").partition("::")[2].partition("The tasks are")[0]
+    helped = EPILOG.partition("\n")[2]
+    one, other = (parse_study(textwrap.dedent(text), "x") for text in (documented, helped))
+    assert one.tasks == other.tasks
+    assert len(one.tasks) == 4 * 30 * 2 * 2
+
+
 def test_built_in_studies_are_found_by_name_only(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -202,7 +213,7 @@ def test_built_in_studies_are_found_by_name_only(
         assert built_in.description
     with pytest.raises(UserError, match="did you mean 'quick'"):
         find_study("quik")
-    with pytest.raises(UserError, match="quick.toml"):
+    with pytest.raises(UserError, match=r"quick\.toml"):
         find_study("quick.toml")
 
 
