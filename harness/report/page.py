@@ -14,11 +14,20 @@ from harness.analysis import challenge as challenging
 from harness.analysis import planted as planting
 from harness.analysis.models import GREATEST_SHARE, LEAST_SHARE
 from harness.analysis.statistics import RESAMPLES
+from harness.analysis.verdict import LinearClaim
 from harness.report import figures, provenance, summary, tables
 from harness.report.build import REPORT, StudyGrowth
 from harness.report.labels import bracket, number, percent, plain, sizes
 from harness.report.sections import Cell, Download, Section, Table, cell, section
 from harness.report.style import inline, render
+
+#: What becomes of linear growth, short enough for a table.
+SHORT: dict[LinearClaim, str] = {
+    "faster": "faster",
+    "possible": "possible",
+    "slower": "slower",
+    "undecided": "not decided",
+}
 
 
 def outputs(study: StudyGrowth) -> dict[str, str]:
@@ -120,8 +129,8 @@ def _overviews(download: Download) -> Iterator[dict[str, str]]:
 
 
 def _verdict_table(study: StudyGrowth) -> Table:
-    head = ["curve", "n", "repl.", "vertices, max.", "vertices, median", "exponent (max.)"]
-    head += ["max. against linear", "edges, max.", "cells, max.", "failed"]
+    head = ["curve", "n", "repl.", "vertices, max.", "vertices, median", "exponent, max."]
+    head += ["linear?", "edges, max.", "cells, max.", "failed"]
     rows = []
     for analysed, label in zip(study.groups, study.labels, strict=True):
         group, curves = analysed.group, analysed.curves
@@ -145,7 +154,7 @@ def _verdict_table(study: StudyGrowth) -> Table:
                     f"{number(power.exponent)} {bracket(power.low, power.high)}".strip(),
                     "" if power.exponent is None else f"{power.exponent:.9g}",
                 ),
-                Cell(summary.LINEAR[claim], claim, claim),
+                Cell(SHORT[claim], claim, claim),
                 _verdict_cell(analysed, "edges", "maximum"),
                 _verdict_cell(analysed, "cells", "maximum"),
                 Cell(str(failed) if failed else "", str(failed), "warn" if failed else ""),

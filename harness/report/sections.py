@@ -9,7 +9,7 @@ from urllib.parse import quote
 import numpy as np
 import pandas as pd
 
-from harness.analysis import HEADLINES, MODELS, STATISTICS, GroupGrowth, Growth
+from harness.analysis import HEADLINES, MODELS, STATISTICS, GroupGrowth, Growth, Statistic
 from harness.report import figures, tables
 from harness.report.labels import bracket, number, parameters, plural, signed_percent, sizes
 from harness.report.style import inline, render
@@ -136,6 +136,7 @@ def _panel(
     document = render(
         lambda figure: figures.growth(figure, of_count, of_trials, counted, declared), 4.3, 5.3
     )
+    shown = _distinct(analysed, headline)
     maximum = analysed.curves[headline, "maximum"].verdict
     description = f"Number of {headline} of {label} against n. Maximum: {maximum.sentence}"
     return Panel(
@@ -143,20 +144,24 @@ def _panel(
         inline(document, slug, description),
         f"figures/{slug}.svg",
         document,
-        _readings(analysed, headline),
         [
-            *(_curve_table(of_count, statistic) for statistic in STATISTICS),
-            *(_trial_table(of_trials, statistic) for statistic in STATISTICS),
+            _reading(analysed.curves[headline, statistic], title)
+            for statistic, title in shown.items()
+        ],
+        [
+            table(part, statistic, title)
+            for table, part in ((_curve_table, of_count), (_trial_table, of_trials))
+            for statistic, title in shown.items()
         ],
     )
 
 
-def _readings(analysed: GroupGrowth, headline: str) -> list[Reading]:
-    """One reading per statistic, or a single one where all statistics are the same."""
+def _distinct(analysed: GroupGrowth, headline: str) -> dict[Statistic, str]:
+    """The statistics to show and their titles: a single one where all of them are the same."""
     curves = [analysed.curves[headline, statistic] for statistic in STATISTICS]
     if all(curve.observed.tolist() == curves[0].observed.tolist() for curve in curves):
-        return [_reading(curves[0], "every statistic")]
-    return [_reading(curve, curve.statistic) for curve in curves]
+        return {STATISTICS[0]: "every statistic"}
+    return {statistic: statistic for statistic in STATISTICS}
 
 
 def _reading(curve: Growth, title: str) -> Reading:
@@ -174,9 +179,9 @@ def _reading(curve: Growth, title: str) -> Reading:
     )
 
 
-def _curve_table(curves: pd.DataFrame, statistic: str) -> Table:
+def _curve_table(curves: pd.DataFrame, statistic: str, title: str) -> Table:
     part = curves[curves["statistic"] == statistic]
-    head = ["n", "counted", statistic, "95 %", "slope"]
+    head = ["n", "counted", "value", "95 %", "slope"]
     head += [f"÷ {model.symbol}" for model in MODELS]
     body = []
     for row in part.to_dict("records"):
@@ -197,10 +202,10 @@ def _curve_table(curves: pd.DataFrame, statistic: str) -> Table:
                 *(cell(row[tables.RATIO[model.name]]) for model in MODELS),
             ]
         )
-    return Table(f"{statistic} per size, and its ratio to each model", head, body)
+    return Table(f"{title}: value at each size, and its ratio to each model", head, body)
 
 
-def _trial_table(trials: pd.DataFrame, statistic: str) -> Table:
+def _trial_table(trials: pd.DataFrame, statistic: str, title: str) -> Table:
     part = trials[trials["statistic"] == statistic]
     challenged = sorted(set(part["n"]))
     head = ["model", "finding", "miss", "99 %"]
@@ -230,7 +235,7 @@ def _trial_table(trials: pd.DataFrame, statistic: str) -> Table:
                 ),
             ]
         )
-    return Table(f"{statistic}: models fitted on the smaller sizes, challenged", head, body)
+    return Table(f"{title}: models fitted on the smaller sizes, challenged", head, body)
 
 
 def _kind(finding: str) -> str:

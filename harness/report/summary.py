@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from harness.analysis import GroupGrowth
-from harness.analysis.verdict import Call
+from harness.analysis.verdict import Call, LinearClaim
 from harness.report.labels import number
 
 CALLS: dict[Call, str] = {
@@ -14,7 +14,7 @@ CALLS: dict[Call, str] = {
     "wrong": "CALLED WRONG",
     "undecided": "not decided",
 }
-LINEAR = {
+LINEAR: dict[LinearClaim, str] = {
     "faster": "faster than linear",
     "possible": "linear not excluded",
     "slower": "slower than linear",
