@@ -62,6 +62,10 @@ class Slabs:
             low, high = (middle + 1, high) if order < 0 else (low, middle)
         return low
 
+    def has_event_at(self, u: fmpq) -> bool:
+        """Whether an event lies on the line u = const."""
+        return any(compare_with_rational(event.number, u) == 0 for event in self.events)
+
     def slab_ending_at(self, p: Point) -> int:
         """The slab in whose interior or on whose right border p's vertical line runs."""
         return sum(compare_numbers(event.number, p.number) < 0 for event in self.events)

@@ -61,7 +61,9 @@ def sweep(arcs: list[Arc], avoid: frozenset[tuple[fmpq, fmpq]] = frozenset()) ->
     """
     junctions = _junctions(arcs)
     faces, numbering = DisjointSet([0]), itertools.count(1)
-    status = sorted_on_line([arc for arc in arcs if arc.start is None], _before(junctions))
+    status = [arc for arc in arcs if arc.start is None]
+    u = _line_between(None, junctions[0].point if junctions else None, status)
+    status = sorted_on_line(status, u)
     gaps = [0]
     sides: dict[Arc, tuple[int, int]] = {}
     samples: list[tuple[fmpq, fmpq, int]] = []
@@ -81,7 +83,7 @@ def sweep(arcs: list[Arc], avoid: frozenset[tuple[fmpq, fmpq]] = frozenset()) ->
         gaps = open_gaps(status, 0, fresh())
     first = list(status)
     unbounded = set(gaps)
-    samples += _gap_samples(status, gaps, _before(junctions), range(len(gaps)), avoid)
+    samples += _gap_samples(status, gaps, u, range(len(gaps)), avoid)
     for k, junction in enumerate(junctions):
         low = _position(status, junction)
         high = low + len(junction.left)
@@ -89,7 +91,7 @@ def sweep(arcs: list[Arc], avoid: frozenset[tuple[fmpq, fmpq]] = frozenset()) ->
             raise SweepError("the arcs that end in a point are not neighbours")
         junction.left = status[low:high]
         following = junctions[k + 1].point if k + 1 < len(junctions) else None
-        u = rational_between(junction.point, following)
+        u = _line_between(junction.point, following, [*status, *junction.right])
         junction.right = sorted_on_line(junction.right, u)
         below, above = gaps[low], gaps[high]
         if junction.right:
@@ -122,8 +124,13 @@ def _junctions(arcs: list[Arc]) -> list[Junction]:
     return [by_point[p] for p in sort_by_u(list(by_point))]
 
 
-def _before(junctions: list[Junction]) -> fmpq:
-    return rational_between(None, junctions[0].point if junctions else None)
+def _line_between(low: Point | None, high: Point | None, arcs: list[Arc]) -> fmpq:
+    """A rational u strictly between two points at which none of the arcs' curves has an event."""
+    u = rational_between(low, high)
+    while any(arc.slabs.has_event_at(u) for arc in arcs):
+        # The shortest rationals are the likeliest to be special: go on towards the left.
+        u = rational_between(low, Point.rational(u, u))
+    return u
 
 
 def sorted_on_line(arcs: list[Arc], u: fmpq) -> list[Arc]:
