@@ -135,11 +135,10 @@ def _run(args: argparse.Namespace, study: Study, directory: Path) -> Summary:
 
 def _report(directory: Path) -> None:
     """Write the report and print where it is and what it concludes."""
-    from harness.report import summary_lines, write_report
+    from harness.report import report_with_lines
 
-    print(f"report: {write_report(directory)}", flush=True)
-    for line in summary_lines(directory):
-        print(line)
+    page, lines = report_with_lines(directory)
+    print(f"report: {page}", *lines, sep="\n")
 
 
 def _say_interrupted(args: argparse.Namespace, summary: Summary) -> int:

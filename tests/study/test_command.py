@@ -34,25 +34,19 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A working directory with a small study file, and a report that is quickly written."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "tiny.toml").write_text(SMALL)
-    monkeypatch.setattr(harness.report, "write_report", _write_report, raising=False)
-    monkeypatch.setattr(harness.report, "summary_lines", _summary_lines, raising=False)
+    monkeypatch.setattr(harness.report, "report_with_lines", _report)
     return tmp_path
 
 
-def _write_report(directory: Path) -> Path:
-    (directory / "report.html").write_text("<html>")
-    return directory / "report.html"
-
-
-def _summary_lines(directory: Path) -> list[str]:
-    return [f"{len(load(directory))} rows: linear"]
+def _report(directory: Path) -> tuple[Path, list[str]]:
+    return directory / "report.html", [f"{len(load(directory))} rows", "linear"]
 
 
 def test_a_study_runs_to_its_report(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """With the real generators and the real builder."""
     assert main(["study", "tiny.toml", "--jobs", "2"]) == 0
     captured = capsys.readouterr()
-    assert captured.out == "report: results/tiny/report.html\n5 rows: linear\n"
+    assert captured.out == "report: results/tiny/report.html\n5 rows\nlinear\n"
     assert "5 tasks: 5 ok; rows in results/tiny" in captured.err
     table = load(here / "results" / "tiny")
     assert (table["status"] == "ok").all()
@@ -117,10 +111,10 @@ def test_an_interrupted_study_says_how_to_go_on(
 def test_an_interrupted_report_says_how_to_get_it(
     here: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def interrupt(_directory: Path) -> Path:
+    def interrupt(_directory: Path) -> tuple[Path, list[str]]:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(harness.report, "write_report", interrupt)
+    monkeypatch.setattr(harness.report, "report_with_lines", interrupt)
     assert main(["study", "tiny.toml"]) == 130
     assert "report later with: avd report results/tiny" in capsys.readouterr().err
 
