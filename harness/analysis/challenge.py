@@ -7,7 +7,8 @@ sizes is *too slow*, one whose prediction overshoots them is *too fast*.
 For a model, the **miss** is the mean over the challenge sizes of
 (observed − predicted)/max(observed, predicted, 1).  Its interval comes from repeating the whole
 procedure — resample, refit, predict, compare — and a model is rejected when the interval excludes
-zero and the rejections fit the order of the models.  Two sources of error are resampled:
+zero, with and without the smallest size, and the rejections fit the order of the models.  Two
+sources of error are resampled:
 
 * the replicates (bootstrap), where they differ;
 * the **wiggle**: what even the best of the candidate models, fitted to all sizes, leaves
@@ -38,6 +39,9 @@ from harness.analysis.models import (
 from harness.analysis.statistics import RESAMPLES, interval
 
 LEVEL = 0.99
+#: A rejection has to stand without the smallest size as well, at this level: there are fewer
+#: sizes then, and the question is only whether the smallest one decided.
+CONFIRMING_LEVEL = 0.8
 #: With fewer sizes three would be fitted and one left to challenge: too few for a verdict.
 LEAST_SIZES = 5
 #: The largest size is at least this multiple of the smallest.
@@ -45,7 +49,7 @@ LEAST_SPAN = 2.0
 #: Below this, a relative difference is floating-point noise, or far less than one object.
 TINY = 1e-6
 
-Finding: TypeAlias = Literal["kept", "too slow", "too fast", "withheld"]
+Finding: TypeAlias = Literal["kept", "too slow", "too fast", "withheld", "fragile"]
 
 
 @dataclass(frozen=True)
@@ -53,6 +57,7 @@ class Trial:
     """One model challenged; predictions and their band are over the challenge sizes.
 
     ``withheld``: the numbers would reject, but unseen (censored) tasks could turn them around.
+    ``fragile``: they would reject, but not without the smallest size; counted as kept.
     """
 
     model: Model
@@ -67,7 +72,7 @@ class Trial:
     @property
     def direction(self) -> Finding:
         """On which side the model fails, withheld or not; "kept" if it does not."""
-        if self.finding == "kept":
+        if self.finding in ("kept", "fragile"):
             return "kept"
         return "too slow" if self.low > 0 else "too fast"
 
@@ -113,10 +118,36 @@ def challenge(series: Series, seed: int, rounds: int = RESAMPLES) -> Challenge:
     if n[0] <= 1 or n[-1] < LEAST_SPAN * n[0] or not (np.diff(n) > 0).all():
         return Challenge(n, none, 0.0, (), f"the sizes do not span a factor of {LEAST_SPAN:g}")
     cut = fit_sizes(k)
-    wiggle = _wiggle(series, float(n[cut - 1]))
-    worlds = _worlds(series, wiggle, seed, rounds)
-    trials = [_trial(model, series, worlds, cut) for model in MODELS]
+    wiggle, trials = _trials(series, seed, rounds, LEVEL)
+    _, again = _trials(_without_smallest(series), seed, rounds, CONFIRMING_LEVEL)
+    trials = [_confirmed(trial, other) for trial, other in zip(trials, again, strict=True)]
     return Challenge(n[:cut], n[cut:], wiggle, tuple(_in_order(trials)))
+
+
+def _trials(series: Series, seed: int, rounds: int, level: float) -> tuple[float, list[Trial]]:
+    """Every model challenged on a series, each for itself; and the wiggle."""
+    cut = fit_sizes(len(series.n))
+    wiggle = _wiggle(series, float(series.n[cut - 1]))
+    worlds = _worlds(series, wiggle, seed, rounds)
+    return wiggle, [_trial(model, series, worlds, cut, level) for model in MODELS]
+
+
+def _without_smallest(series: Series) -> Series:
+    draws = None if series.draws is None else series.draws[:, 1:]
+    return replace(
+        series,
+        n=series.n[1:],
+        observed=series.observed[1:],
+        draws=draws,
+        censored=series.censored[1:],
+    )
+
+
+def _confirmed(trial: Trial, without: Trial) -> Trial:
+    """The smallest instances are the least like large ones: no rejection rests on them alone."""
+    if trial.direction not in ("kept", without.direction):
+        return replace(trial, finding="fragile")
+    return trial
 
 
 def _in_order(trials: list[Trial]) -> list[Trial]:
@@ -164,7 +195,7 @@ def _worlds(series: Series, wiggle: float, seed: int, rounds: int) -> Floats:
     return np.maximum(base * factor, 0.0)
 
 
-def _trial(model: Model, series: Series, worlds: Floats, cut: int) -> Trial:
+def _trial(model: Model, series: Series, worlds: Floats, cut: int, level: float) -> Trial:
     columns = extreme_curves(model, series.n, float(series.n[cut - 1]))
     small, large = columns[:cut], columns[cut:]
     weights = relative_weights(small, series.observed[:cut])
@@ -173,8 +204,8 @@ def _trial(model: Model, series: Series, worlds: Floats, cut: int) -> Trial:
     miss = float(relative_miss(observed, predicted).mean())
 
     predictions = np.maximum(fit(small, worlds[:, :cut], weights) @ large.T, 0.0)
-    low, high = interval(relative_miss(worlds[:, cut:], predictions).mean(axis=1), LEVEL)
-    band_low, band_high = interval(predictions, LEVEL)
+    low, high = interval(relative_miss(worlds[:, cut:], predictions).mean(axis=1), level)
+    band_low, band_high = interval(predictions, level)
     visible = _visible(series, observed, predicted)
     finding = _finding(float(low), float(high), visible, series.censored, cut)
     return Trial(model, finding, miss, float(low), float(high), predicted, band_low, band_high)

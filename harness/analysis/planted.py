@@ -21,7 +21,7 @@ from harness.analysis.samples import Group
 from harness.analysis.statistics import Statistic, evaluate, is_noise_free, resample
 from harness.analysis.verdict import judge
 
-TRIALS = 40
+TRIALS = 25
 #: Resamples per planted sample; fewer than for a verdict, there are many of them.
 ROUNDS = 300
 JUDGED: tuple[Statistic, ...] = ("maximum", "median")

@@ -14,7 +14,7 @@ Statistic: TypeAlias = Literal["maximum", "median", "mean"]
 STATISTICS: tuple[Statistic, ...] = get_args(Statistic)
 
 #: Resamples behind every interval.
-RESAMPLES = 1000
+RESAMPLES = 2000
 
 
 def evaluate(statistic: Statistic, samples: Floats) -> Floats:
@@ -74,6 +74,10 @@ def bounds(statistic: Statistic, counts: Floats, unseen: int) -> Bounds:
 
 
 def interval(draws: Floats, level: float = 0.95) -> tuple[Floats, Floats]:
-    """The percentile interval of bootstrap draws along the first axis."""
-    low, high = np.quantile(draws, [(1 - level) / 2, (1 + level) / 2], axis=0)
-    return low, high
+    """The percentile interval of bootstrap draws along the first axis.
+
+    Its ends are draws themselves (order statistics, the outer ones), not interpolated.
+    """
+    ordered = np.sort(draws, axis=0)
+    outside = int((1 - level) / 2 * len(ordered))
+    return ordered[outside], ordered[len(ordered) - 1 - outside]

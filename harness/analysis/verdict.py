@@ -63,9 +63,10 @@ def judge(challenge: Challenge) -> Verdict:
         return Verdict("undecided", (), (), (), (), "not decided", sentence)
     by_finding = {
         finding: tuple(trial.model for trial in trials if trial.finding == finding)
-        for finding in ("kept", "too slow", "too fast", "withheld")
+        for finding in ("too slow", "too fast", "withheld")
     }
-    kept, withheld = by_finding["kept"], by_finding["withheld"]
+    kept = tuple(trial.model for trial in trials if trial.finding in ("kept", "fragile"))
+    withheld = by_finding["withheld"]
     slow, fast = by_finding["too slow"], by_finding["too fast"]
     kind, label = _label(kept, slow, fast, withheld)
     sentence = _sentence(kind, label, challenge, slow, fast, withheld)

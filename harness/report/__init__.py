@@ -1,4 +1,4 @@
-"""The report of a study: verdicts, figures and tables in one HTML file that needs nothing else."""
+"""What people look at: the report of a study, one HTML file that needs nothing else; drawings."""
 
 from __future__ import annotations
 

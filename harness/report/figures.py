@@ -189,7 +189,7 @@ def _misses(axes: Axes, trials: pd.DataFrame, shown: dict[str, str]) -> None:
             row = part[part["model"] == model.name].iloc[0]
             height = rank + offset
             axes.plot([row["miss_low"], row["miss_high"]], [height, height], "-", color=colour)
-            kept = row["finding"] in ("kept", "withheld")
+            kept = row["finding"] in ("kept", "withheld", "fragile")
             axes.plot(
                 [row["miss"]],
                 [height],

@@ -96,6 +96,7 @@ def _download(title: str, table: pd.DataFrame) -> Download:
 def _method() -> dict[str, str]:
     return {
         "level": percent(challenging.LEVEL),
+        "confirming": percent(challenging.CONFIRMING_LEVEL),
         "least_sizes": str(challenging.LEAST_SIZES),
         "span": number(challenging.LEAST_SPAN),
         "least_share": number(LEAST_SHARE),

@@ -239,7 +239,7 @@ def _trial_table(trials: pd.DataFrame, statistic: str, title: str) -> Table:
 
 
 def _kind(finding: str) -> str:
-    return {"kept": "good", "withheld": "warn"}.get(finding, "bad")
+    return {"kept": "good", "withheld": "warn", "fragile": "warn"}.get(finding, "bad")
 
 
 def cell(value: float, before: str = "", kind: str = "") -> Cell:

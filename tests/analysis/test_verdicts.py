@@ -231,3 +231,16 @@ def test_survivors_are_a_run_of_neighbouring_models(values: list[int], marked: i
     assert all(after == before + 1 for before, after in pairwise(alive))
     assert verdict.too_slow == MODELS[: len(verdict.too_slow)]
     assert verdict.too_fast == MODELS[len(MODELS) - len(verdict.too_fast) :]
+
+
+def test_no_rejection_rests_on_the_smallest_size_alone() -> None:
+    # A grid of n/2 + n/2 lines: a single pair (n = 2) is not yet like the others.
+    n = (2, 4, 6, 8, 10)
+    values = np.array([3, 18, 36, 60, 85])
+    verdict = judge(exact(n, values))
+    assert "n^2" in [model.name for model in verdict.kept]
+    findings = {trial.model.name: trial.finding for trial in exact(n, values).trials}
+    assert findings["n^2"] == "fragile"
+    larger = (4, 6, 8, 10, 12, 14, 16, 20)
+    values = np.array([18, 36, 60, 85, 123, 161, 207, 319])
+    assert judge(exact(larger, values)).kept == (MODELS[-1],)
