@@ -1,0 +1,74 @@
+"""``avd draw``: a picture of the diagram of one file."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from harness.cli.options import FORMATS, add_diagram_options, load
+
+PICTURES = (".svg", ".png", ".pdf")
+
+DESCRIPTION = """\
+Draw a diagram: cells coloured by segment, edges as true curves, nodes by kind.  A kernel much
+smaller than its polygon is shown a second time, enlarged."""
+
+
+def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the verb ``draw``."""
+    parser = subparsers.add_parser(
+        "draw", help="draw a diagram", description=DESCRIPTION, allow_abbrev=False
+    )
+    parser.add_argument("file", metavar="FILE", help=FORMATS)
+    parser.add_argument(
+        "-o",
+        "--output",
+        metavar="PICTURE",
+        type=Path,
+        help="where to write: .svg, .png or .pdf (default: SVG on standard output)",
+    )
+    add_diagram_options(parser)
+    parser.add_argument(
+        "--width", type=float, default=7.0, metavar="INCHES", help="default: %(default)g"
+    )
+    parser.add_argument(
+        "--window",
+        nargs=4,
+        type=float,
+        metavar=("X0", "Y0", "X1", "Y1"),
+        help="the part to show (default: all segments, and all nodes that are not far away)",
+    )
+    parser.add_argument("--labels", action="store_true", help="write each cell's segment into it")
+    parser.add_argument("--no-nodes", action="store_true", help="leave out the marks of nodes")
+    parser.add_argument("--title", metavar="TEXT", help="default: the name of the instance")
+    parser.add_argument("--caption", metavar="TEXT", help="default: the counts; empty for none")
+    parser.set_defaults(run=run, usage_error=parser.error)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Write the picture; exit status 0."""
+    target: Path | None = args.output if args.output != Path("-") else None
+    suffix = ".svg" if target is None else target.suffix.lower()
+    if suffix not in PICTURES:
+        args.usage_error(f"-o {target}: a picture is {', '.join(PICTURES[:-1])} or {PICTURES[-1]}")
+
+    from harness.diagram import build
+    from harness.report.drawing import render
+
+    instance = load(args.file)
+    picture = render(
+        build(instance, args.domain, args.objective, args.builder),
+        suffix[1:],
+        width=args.width,
+        window=args.window,
+        labels=args.labels,
+        nodes=not args.no_nodes,
+        title=instance.name if args.title is None else args.title,
+        caption=args.caption,
+    )
+    if target is None:
+        sys.stdout.buffer.write(picture)
+    else:
+        target.write_bytes(picture)  # made as a whole before: a failure leaves no half picture
+    return 0

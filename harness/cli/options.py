@@ -1,0 +1,60 @@
+"""What several verbs share: the options that choose a diagram, and reading its instance."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from typing import TYPE_CHECKING
+
+from harness.diagram import BUILDERS
+from harness.diagram.counts import DOMAINS, OBJECTIVES
+
+if TYPE_CHECKING:
+    from harness.geometry.instance import Instance
+
+FORMATS = "an instance file: JSON, WKT or GeoJSON (- reads standard input)"
+
+
+def add_diagram_options(parser: argparse.ArgumentParser) -> None:
+    """Add ``--domain``, ``--objective`` and ``--builder``."""
+    parser.add_argument(
+        "--domain",
+        choices=DOMAINS,
+        help="where (default: kernel for a polygon, plane for segments)",
+    )
+    parser.add_argument(
+        "--objective",
+        choices=OBJECTIVES,
+        default=OBJECTIVES[0],
+        help="which visual angle wins a point (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--builder",
+        choices=BUILDERS,
+        default=BUILDERS[0],
+        help="how the diagram is built (default: %(default)s)",
+    )
+
+
+def load(path: str) -> Instance:
+    """The valid instance in the file ``path``; "-" is standard input.
+
+    Raises:
+        UserError: names the file, the index and the reason.
+    """
+    from harness.errors import UserError
+    from harness.geometry.formats import parse_instance, read_instance
+    from harness.geometry.validation import validate
+
+    if path == "-":
+        source = "standard input"
+        try:
+            instance = parse_instance(sys.stdin.read(), source)
+        except UserError as error:
+            raise UserError(f"{source}: {error}") from None
+        except UnicodeDecodeError:
+            raise UserError(f"{source}: not text (UTF-8)") from None
+    else:
+        instance = read_instance(path)
+    validate(instance)
+    return instance
