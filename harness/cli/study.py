@@ -97,7 +97,11 @@ def run(args: argparse.Namespace) -> int:
 
     study = find_study(args.study)
     directory = args.out or Path("results") / study.name
-    summary = _run(args, study, directory)
+    try:
+        summary = _run(args, study, directory)
+    except KeyboardInterrupt:  # at the very start, or for the second time
+        print(f"avd: interrupted; continue with: {_command(args, '--resume')}", file=sys.stderr)
+        return INTERRUPTED
     if summary.interrupted and summary.missing:
         return _say_interrupted(args, summary)
     _say_how_it_went(args, summary)

@@ -192,12 +192,16 @@ class _Plan:
 def _plan(study: Study, directory: Path, *, retry: bool) -> _Plan:
     """Compare the study with the rows.  Raises UserError (see ``read_rows``)."""
     wanted = {task.key for task in study.tasks}
+    done: set[str] = set()
     staying: list[Record] = []
     leaving: list[Record] = []
     for row in read_rows(directory / ROWS):
-        again = retry and row["status"] != "ok"
-        (staying if row["task"] in wanted and not again else leaving).append(row)
-    done = {row["task"] for row in staying}
+        again = row["task"] in done or (retry and row["status"] != "ok")
+        if row["task"] in wanted and not again:
+            done.add(row["task"])
+            staying.append(row)
+        else:
+            leaving.append(row)
     returning = {
         row["task"]: row
         for row in read_rows(directory / ASIDE)

@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from harness.errors import UserError
-from harness.study import load, schema
-from harness.study.lock import locked
+from harness.study import load, lock, schema
+from harness.study.lock import LOCK, locked
 from harness.study.manifest import read_manifest, write_manifest
 from harness.study.outcome import COLUMNS, Outcome, row_of
 from harness.study.schema import SCHEMA, Record
@@ -142,8 +142,27 @@ def test_one_writer_at_a_time(tmp_path: Path) -> None:
         locked(tmp_path),
     ):
         pass
+    (tmp_path / LOCK).write_text("12345\n")  # left behind by a killed run: held by nobody
     with locked(tmp_path):
-        pass  # free again
+        pass
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_lock_file_removed_meanwhile_is_no_lock(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Opened before its holder removed it, locked after: whoever made the new file would differ."""
+    acquire = lock._acquire
+
+    def lose_the_first(path: Path) -> int:
+        monkeypatch.setattr(lock, "_acquire", acquire)
+        descriptor = acquire(path)
+        path.unlink()
+        return descriptor
+
+    monkeypatch.setattr(lock, "_acquire", lose_the_first)
+    with locked(tmp_path), pytest.raises(UserError, match="another run"), locked(tmp_path):
+        pass
 
 
 def test_what_a_newer_program_wrote_is_refused(tmp_path: Path) -> None:
