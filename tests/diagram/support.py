@@ -1,4 +1,4 @@
-"""What the diagram tests share: instances from plain coordinates, the corpus, edges as the paper sees them."""
+"""What the diagram tests share: instances from plain coordinates, the corpus, other countings."""
 
 from __future__ import annotations
 
@@ -37,7 +37,8 @@ def _valid(instance: Instance) -> Instance:
 
 def corpus() -> dict[str, dict[str, Any]]:
     """Every case of the corpus by name: instance, domain, objective and what is known of it."""
-    return {path.stem: json.loads(path.read_text("utf-8")) for path in sorted(CORPUS.glob("*.json"))}
+    paths = sorted(CORPUS.glob("*.json"))
+    return {path.stem: json.loads(path.read_text("utf-8")) for path in paths}
 
 
 def corpus_instance(case: dict[str, Any]) -> Instance:

@@ -55,9 +55,7 @@ def test_a_triangle_has_its_fermat_point() -> None:
     (vertex,) = (node for node in diagram.nodes if node.kind == "triple")
     # From the Fermat point all three sides are seen under 120°.
     corners = [(0, 0), (7, 1), (2, 5)]
-    bearings = sorted(
-        math.atan2(y - vertex.point[1], x - vertex.point[0]) for x, y in corners
-    )
+    bearings = sorted(math.atan2(y - vertex.point[1], x - vertex.point[0]) for x, y in corners)
     assert bearings[1] - bearings[0] == pytest.approx(2 * math.pi / 3, abs=1e-12)
     assert bearings[2] - bearings[1] == pytest.approx(2 * math.pi / 3, abs=1e-12)
 
@@ -95,7 +93,7 @@ def test_collinear_segments_split_the_plane_by_a_closed_edge() -> None:
 
 
 def _line_meets_outside(s: Any, t: Any) -> bool:
-    """Whether the lines of two segments meet in one point that lies outside both closed segments."""
+    """Whether the lines of two segments meet in one point, outside both closed segments."""
     (a, b), (c, d) = s, t
     w, z = (b[0] - a[0], b[1] - a[1]), (d[0] - c[0], d[1] - c[1])
     determinant = w[0] * z[1] - w[1] * z[0]
