@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
@@ -96,7 +97,7 @@ class AngularVoronoi:
         one on an edge or at a node.  Raises ValueError for another shape or coordinates that are
         not finite.
         """
-        rows = [tuple(point) for point in points]
+        rows = [tuple(map(_rational, point)) for point in points]
         if any(len(row) != 2 for row in rows):
             raise ValueError("points must have shape (m, 2)")
         found = self.diagram.locate(rows)
@@ -141,6 +142,14 @@ def as_instance(segments: Any) -> Instance:
         raise UserError("segments must be an array of shape (n, 2, 2) or (n, 2), or an instance")
     values = segments.tolist() if isinstance(segments, np.ndarray) else list(segments)
     return Instance.from_arrays(_kind(values), values)
+
+
+def _rational(value: Any) -> Fraction:
+    """The exact value of a coordinate; numpy's numbers are taken as the Python numbers they are."""
+    plain = value.item() if isinstance(value, np.generic) else value
+    if isinstance(plain, float) and not math.isfinite(plain):
+        raise ValueError(f"coordinates must be finite, not {plain}")
+    return Fraction(plain)
 
 
 def _kind(values: Sequence[Any]) -> Kind:

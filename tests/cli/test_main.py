@@ -71,7 +71,9 @@ def failing_with(monkeypatch, error: BaseException) -> int:
         raise error
 
     parser = build_parser()
-    monkeypatch.setattr(parser, "parse_args", lambda _: type("Args", (), {"run": staticmethod(run)}))
+    monkeypatch.setattr(
+        parser, "parse_args", lambda _: type("Args", (), {"run": staticmethod(run)})
+    )
     monkeypatch.setattr(command, "build_parser", lambda: parser)
     return main(["families"])
 
@@ -79,7 +81,11 @@ def failing_with(monkeypatch, error: BaseException) -> int:
 @pytest.mark.parametrize(
     ("error", "status", "told"),
     [
-        (UserError("f.json: segment 3:\n  zero length"), 1, "avd: f.json: segment 3: zero length\n"),
+        (
+            UserError("f.json: segment 3:\n  zero length"),
+            1,
+            "avd: f.json: segment 3: zero length\n",
+        ),
         (FileNotFoundError(2, "No such file", "a.svg"), 1, "avd: a.svg: No such file\n"),
         (OSError("device lost"), 1, "avd: device lost\n"),
         (KeyboardInterrupt(), 130, "avd: interrupted\n"),
