@@ -85,7 +85,7 @@ def intersect(
     if resultant == 0:
         raise ValueError("the curves share a component")
     linear = _linear_combination(f, g)
-    if linear is not None and not _any_plausible(resultant, linear, plausible):
+    if linear is not None and not _any_plausible(resultant, linear, strip, plausible):
         return []
     points = []
     for number in real_numbers(resultant):
@@ -105,11 +105,17 @@ def intersect(
 def _any_plausible(
     resultant: fmpz_poly,
     linear: tuple[fmpz_poly, fmpz_poly],
+    strip: Strip,
     plausible: Callable[[arb, arb], bool],
 ) -> bool:
+    """Whether some real root could be the u of a plausible point in the strip."""
+    low, high = (end and end.number.ball(FIRST_PRECISION) for end in strip)
     with ctx.workprec(FIRST_PRECISION):
         for root, _ in resultant.complex_roots():
-            if root.imag == 0:
+            beyond = (low is not None and root.real < low) or (
+                high is not None and root.real > high
+            )
+            if root.imag == 0 and not beyond:
                 v = -linear[0](root.real) / linear[1](root.real)
                 if not v.is_finite() or plausible(root.real, v):
                     return True
