@@ -15,6 +15,8 @@ far below the n⁻² at which the weave begins to come apart.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from generators.family import Family, GeneratorError, Interval, Parameter
@@ -25,11 +27,14 @@ _NOISE = (
     Parameter("noise_power", int, 3, "noise is scaled by n^(-noise_power)", Interval(0, 6)),
 )
 
+#: π/6, the default tilt
+_SIXTH = math.pi / 6.0
+
 
 def zigzag(
-    n: int, seed: int = 0, *, tilt: float = 30.0, noise: float = 1e-3, noise_power: int = 3
+    n: int, seed: int = 0, *, tilt: float = _SIXTH, noise: float = 1e-3, noise_power: int = 3
 ) -> Array:
-    """A star with n/2 equal spikes, every edge tilted by ``tilt`` degrees; shape (n, 2).
+    """A star with n/2 equal spikes, every edge tilted by ``tilt`` radians; shape (n, 2).
 
     For an edge from radius 1 to radius ρ over the angle φ = 2π/n the tilt τ at its middle
     obeys tan τ = (1 − ρ²) / (2ρ sin φ), hence ρ = √(1 + κ²) − κ with κ = tan τ · sin φ: the
@@ -43,7 +48,8 @@ def zigzag(
     of tips described in this module.  O(n).
     """
     ZIGZAG.check(n, {"tilt": tilt, "noise": noise, "noise_power": noise_power})
-    kappa = sine(tilt / 360.0) / cosine(tilt / 360.0) * sine(1.0 / n)
+    turns = tilt / (2.0 * math.pi)
+    kappa = sine(turns) / cosine(turns) * sine(1.0 / n)
     inner = 1.0 / (kappa + float(np.sqrt(1.0 + kappa * kappa)))  # √(1 + κ²) − κ, stably
     return _alternating("zigzag", n, seed, inner, noise * inverse_power(n, noise_power))
 
@@ -114,7 +120,7 @@ ZIGZAG = Family(
     control=True,
     build=zigzag,
     parameters=(
-        Parameter("tilt", float, 30.0, "tilt τ of the edges, in degrees", Interval(0.01, 89.0)),
+        Parameter("tilt", float, _SIXTH, "tilt τ of the edges, in radians", Interval(1e-4, 1.56)),
         *_NOISE,
     ),
     smallest=4,

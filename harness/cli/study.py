@@ -31,7 +31,7 @@ a study file:
   family = "zigzag"               # see avd families
   n = { from = 8, to = 64, factor = 2 }         # or a number, or a list
   replicates = 30                 # random instances of each kind (default 1)
-  params = { tilt = [20, 30] }    # the family's parameters
+  params = { tilt = [0.3, 0.5] }    # the family's parameters
   domain = ["kernel", "plane"]    # default: kernel for polygons, plane for segments
   objective = "smallest"          # or "largest"
   builder = "reference"

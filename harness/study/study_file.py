@@ -12,7 +12,7 @@ A study file looks like this::
     family = "zigzag"
     n = { from = 8, to = 64, factor = 2 }      # or a list, or one number
     replicates = 30                # instances of each kind (default 1)
-    params = { tilt = [20, 30] }   # a scalar or a list each; lists multiply
+    params = { tilt = [0.3, 0.5] }   # a scalar or a list each; lists multiply
     domain = ["kernel", "plane"]   # default: kernel for polygons, plane for segments
     objective = "smallest"         # default
     builder = "reference"          # default
