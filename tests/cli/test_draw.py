@@ -36,22 +36,9 @@ def test_standard_output_is_svg(target, capfdbinary):
 
 @pytest.mark.usefixtures("square")
 def test_options_reach_the_picture(capfdbinary):
-    words = [
-        "--no-nodes",
-        "--labels",
-        "--width",
-        "4",
-        "--window",
-        "0",
-        "0",
-        "2",
-        "2",
-        "--caption",
-        "C",
-        "--domain",
-        "plane",
-    ]
-    assert main(["draw", "square.json", *words, "--objective", "largest"]) == 0
+    words = ["--no-nodes", "--labels", "--width", "4", "--caption", "C", "--domain", "plane"]
+    words += ["--window", "0", "0", "2", "2", "--objective", "largest"]
+    assert main(["draw", "square.json", *words]) == 0
     expected = render(
         build(read_instance("square.json"), "plane", "largest"),
         nodes=False,
