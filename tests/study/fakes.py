@@ -83,6 +83,12 @@ def _allocate_at_once() -> None:
     np.ones(1 << 34)
 
 
+def _reserve() -> None:
+    import numpy as np
+
+    np.empty(1 << 30, dtype=np.uint8)  # never touched: the resident size stays small
+
+
 def _wrap_memory_error() -> None:
     try:
         _fill_memory()
@@ -130,6 +136,9 @@ MISDEEDS = {
 }
 """What to do, and the status and (the beginning of) the message that must come of it."""
 
+if sys.platform == "linux":  # elsewhere the system does not count reserved memory
+    MISDEEDS["reserve"] = (_reserve, "memory", "memory limit of 300 MiB reached")
+
 ENDLESS = ("hold", "sleep")
 """The misdeeds that only a time limit ends."""
 
@@ -138,6 +147,14 @@ def misbehave(task: Task) -> Measurement:
     """Do the misdeed that the builder's name calls for; otherwise as ``quick``."""
     if task.builder in MISDEEDS:
         MISDEEDS[task.builder][0]()
+    return quick(task)
+
+
+def endless_and_logged(log: Path, task: Task) -> Measurement:
+    """Adds the task's key to ``log`` and then sleeps for an hour."""
+    with open(log, "a") as file:
+        file.write(task.key + "\n")
+    time.sleep(3600)
     return quick(task)
 
 

@@ -23,10 +23,16 @@ ROOT = Path(__file__).parents[2]
 JOBS = 2
 
 
-def _start(directory: Path, log: Path, mode: str) -> subprocess.Popen[str]:
+def _start(
+    directory: Path, log: Path, mode: str, work: str = "slow_and_logged"
+) -> subprocess.Popen[str]:
     command = [sys.executable, "-m", "tests.study.run_slowly", str(directory), str(log), mode]
     return subprocess.Popen(
-        [*command, str(JOBS)], cwd=ROOT, stderr=subprocess.PIPE, text=True, start_new_session=True
+        [*command, str(JOBS), work],
+        cwd=ROOT,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
     )
 
 
@@ -106,13 +112,17 @@ def test_killed_at_random_moments_a_study_ends_with_the_same_rows(
 
 def test_what_a_killed_run_left_running_ends(tmp_path: Path) -> None:
     directory, log = tmp_path / "results", tmp_path / "log"
-    process = _start(directory, log, "new")
-    _wait_for_rows(process, directory, 3)
+    process = _start(directory, log, "new", "endless_and_logged")
+    deadline = time.monotonic() + 60
+    while not (log.exists() and log.read_text().count("\n") == JOBS):
+        assert time.monotonic() < deadline
+        time.sleep(0.01)
     children = psutil.Process(process.pid).children(recursive=True)
     process.kill()
-    process.communicate()
-    _, alive = psutil.wait_procs(children, timeout=10)
+    assert len(children) >= JOBS
+    _, alive = psutil.wait_procs(children, timeout=15)
     assert not alive
+    process.communicate()
 
 
 INTERRUPTIONS: list[tuple[signal.Signals, Callable[[int, int], None]]] = [
