@@ -23,6 +23,8 @@ from functools import cached_property, lru_cache
 
 from flint import arb, ctx, fmpq, fmpq_poly, fmpz_mpoly, fmpz_mpoly_ctx, fmpz_poly
 
+from harness.diagram.roots import real_root_balls
+
 ONE = fmpq_poly([1])
 RING = fmpz_mpoly_ctx.get(("u", "v"), "lex")
 U, V = RING.gens()
@@ -87,11 +89,7 @@ class RealNumber:
 @lru_cache(maxsize=200_000)
 def _real_roots(coefficients: tuple[int, ...], bits: int) -> tuple[arb, ...]:
     """Disjoint enclosures of the real roots of a squarefree integer polynomial, increasing."""
-    with ctx.workprec(bits):
-        if len(coefficients) == 2:
-            return (arb(fmpq(-coefficients[0], coefficients[1])),)
-        roots = [z.real for z, _ in fmpz_poly(list(coefficients)).complex_roots() if z.imag == 0]
-        return tuple(sorted(roots, key=lambda root: root.mid()))
+    return tuple(real_root_balls(fmpz_poly(list(coefficients)), bits))
 
 
 def real_numbers(polynomial: fmpz_poly) -> list[RealNumber]:

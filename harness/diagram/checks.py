@@ -8,10 +8,17 @@ builder's own algebra shows as well.
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from fractions import Fraction
 
-from harness.diagram.planar_map import VERTEX_KINDS, Cell, Node, PlanarMap, Side
-from harness.geometry.predicates import compare_visual_angles
+import numpy as np
+
+from harness.diagram.planar_map import VERTEX_KINDS, Cell, Node, PlanarMap, RationalPoint, Side
+from harness.geometry.predicates import (
+    UNDEFINED,
+    compare_visual_angles,
+    compare_visual_angles_at,
+)
 
 
 class InsaneMap(ArithmeticError):
@@ -173,22 +180,52 @@ def boundary_splits_into_components(diagram: PlanarMap) -> None:
 
 def witnesses_are_won(diagram: PlanarMap) -> None:
     """At every witness point the segment of its cell is the winner; every cell has a witness."""
-    segments = diagram.instance.rational_segments()
+    inside = [(point, c) for point, c in diagram.witnesses if c >= 0]
+    owners = [diagram.cells[c].segment for _, c in inside]
+    orders = _orders(diagram, [point for point, _ in inside], owners)
     sense = 1 if diagram.objective == "smallest" else -1
-    seen: defaultdict[int, int] = defaultdict(int)
-    for point, c in diagram.witnesses:
-        if c < 0:
-            continue
-        seen[c] += 1
-        owner = diagram.cells[c].segment
-        for k, segment in enumerate(segments):
-            order = compare_visual_angles(point, segments[owner], segment)
+    for (_, c), owner, row in zip(inside, owners, orders, strict=True):
+        for k, order in enumerate(row):
             _require(
-                order is not None and order * sense <= 0,
+                order != UNDEFINED and order * sense <= 0,
                 f"segment {k} beats segment {owner} at a witness of the latter's cell {c}",
             )
-    for c in range(len(diagram.cells)):
-        _require(seen[c] > 0, f"cell {c} has no witness")
+    unseen = set(range(len(diagram.cells))) - {c for _, c in inside}
+    _require(not unseen, f"cells {sorted(unseen)} have no witness")
+
+
+def _orders(
+    diagram: PlanarMap, points: list[RationalPoint], owners: list[int]
+) -> Iterator[list[int]]:
+    """For each point the exact signs of θ(owner) − θ(k), k = 0, …, n − 1.
+
+    All points that are doubles are compared at once, the others in rational arithmetic.
+    """
+    doubles = [_as_doubles(point) for point in points]
+    plain = [k for k, point in enumerate(doubles) if point is not None]
+    table: dict[int, list[int]] = {}
+    if diagram.instance.exact is None and plain:
+        segments = diagram.instance.segments
+        at = np.array([doubles[k] for k in plain])
+        own = segments[[owners[k] for k in plain]]
+        signs = compare_visual_angles_at(at[:, None], own[:, None], segments[None])
+        table = dict(zip(plain, signs.tolist(), strict=True))
+    exact = diagram.instance.rational_segments()
+    for k, (point, owner) in enumerate(zip(points, owners, strict=True)):
+        if k in table:
+            yield table[k]
+        else:
+            signs_here = (compare_visual_angles(point, exact[owner], other) for other in exact)
+            yield [UNDEFINED if sign is None else sign for sign in signs_here]
+
+
+def _as_doubles(point: RationalPoint) -> tuple[float, float] | None:
+    """The point if both coordinates are doubles."""
+    try:
+        x, y = float(point[0]), float(point[1])
+    except OverflowError:
+        return None
+    return (x, y) if (Fraction(x), Fraction(y)) == point else None
 
 
 def vertices_are_ties(diagram: PlanarMap) -> None:

@@ -20,6 +20,7 @@ from harness.diagram.algebra import (
     precisions,
     real_numbers,
 )
+from harness.diagram.roots import real_root_balls
 
 Strip = tuple[Point | None, Point | None]
 """The vertical strip between two points; None stands for ∓∞."""
@@ -111,14 +112,12 @@ def _any_plausible(
     """Whether some real root could be the u of a plausible point in the strip."""
     low, high = (end and end.number.ball(FIRST_PRECISION) for end in strip)
     with ctx.workprec(FIRST_PRECISION):
-        for root, _ in resultant.complex_roots():
-            beyond = (low is not None and root.real < low) or (
-                high is not None and root.real > high
-            )
-            if root.imag == 0 and not beyond:
-                v = -linear[0](root.real) / linear[1](root.real)
-                if not v.is_finite() or plausible(root.real, v):
-                    return True
+        for root in real_root_balls(resultant, FIRST_PRECISION):
+            if (low is not None and root < low) or (high is not None and root > high):
+                continue
+            v = -linear[0](root) / linear[1](root)
+            if not v.is_finite() or plausible(root, v):
+                return True
     return False
 
 

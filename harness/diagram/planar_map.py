@@ -6,6 +6,7 @@ edges), which belong to the builder; this room needs no more of them than the tw
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -23,6 +24,10 @@ from harness.geometry.instance import Instance
 RationalPoint = tuple[Fraction, Fraction]
 Window = tuple[float, float, float, float]
 VERTEX_KINDS = ("triple", "crossing", "saddle")
+
+
+def _fraction(value: float | Fraction) -> Fraction:
+    return value if isinstance(value, Fraction) else Fraction(float(value))
 
 
 class Place(Protocol):
@@ -212,7 +217,12 @@ class PlanarMap:
 
         ``points``: shape (m, 2).  Raises ValueError for coordinates that are not finite.
         """
-        return [self.locator((Fraction(x), Fraction(y))) for x, y in points]
+        exact = []
+        for x, y in points:
+            if not (math.isfinite(x) and math.isfinite(y)):
+                raise ValueError(f"({x}, {y}) is no point of the plane")
+            exact.append((_fraction(x), _fraction(y)))
+        return [self.locator(point) for point in exact]
 
     def sanity_check(self) -> None:
         """Check everything a diagram must satisfy.

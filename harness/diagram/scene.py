@@ -1,9 +1,10 @@
 """The visual angles of an instance as exact polynomials in sheared coordinates, and their order.
 
 With Q and L as in :mod:`harness.geometry.visual_angle`, cot θ_p(s) = Q/|L|, so a smaller visual
-angle is a larger cotangent.  All input coordinates are rational; they are scaled by one positive
-integer (a similarity: no angle changes) to integers, then sheared, (u, v) = (x + shear·y, y), which
-only renames the points of the plane and brings them into generic position.
+angle is a larger cotangent.  All input coordinates are rational; one positive rational factor (a
+similarity: no angle changes) makes them integers without a common factor.  Then they are sheared,
+(u, v) = (x + shear·y, y), which only renames the points of the plane and brings them into generic
+position.
 """
 
 from __future__ import annotations
@@ -36,7 +37,10 @@ class Scene:
     ) -> None:
         """``others``: further points (corners of the domain) that must become integers too."""
         corners = [point for segment in segments for point in segment] + list(others)
-        self.scale = math.lcm(*(c.denominator for point in corners for c in point))
+        denominator = math.lcm(*(c.denominator for point in corners for c in point))
+        numerators = [int(c * denominator) for point in corners for c in point]
+        self.ratio = Fraction(denominator, math.gcd(*numerators) or 1)
+        self.scale = fmpq(self.ratio.numerator, self.ratio.denominator)
         self.shear = shear
         self.sense = 1 if objective == "smallest" else -1
         self.segments = segments
@@ -54,8 +58,7 @@ class Scene:
 
     def integers(self, point: RationalPoint) -> tuple[int, int]:
         """The point in the scaled (unsheared) integer coordinates."""
-        x, y = point[0] * self.scale, point[1] * self.scale
-        return int(x), int(y)
+        return int(point[0] * self.ratio), int(point[1] * self.ratio)
 
     def sheared(self, point: RationalPoint) -> Point:
         """The exact point (u, v) of a rational point (x, y) of the plane."""

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from harness.diagram.algebra import FIRST_PRECISION, NotGeneric, Point
 from harness.diagram.arcs import Arc
-from harness.diagram.fibres import intersect
+from harness.diagram.fibres import intersect, rational_between
 from harness.diagram.planar_map import RationalPoint, Window
 from harness.diagram.scene import Scene
 
@@ -48,9 +48,16 @@ def _fraction(value: arb) -> Fraction:
 
 
 def direction_at_infinity(scene: Scene, arc: Arc, outwards: bool) -> tuple[float, float]:
-    """The unit vector in which an unbounded arc leaves, from a point 2^60 sizes away."""
+    """The unit vector in which an unbounded arc leaves, from a point 2^60 sizes away,
+    beyond the last event of its curve."""
     size = 1 + max(abs(c) for s in scene.segments for p in s for c in scene.integers(p))
-    u = fmpq((1 if outwards else -1) * FAR * size * scene.shear)
+    events = arc.slabs.events
+    if outwards:
+        beyond = rational_between(events[-1] if events else None, None)
+        u = FAR * max(beyond, fmpq(size * scene.shear))
+    else:
+        beyond = rational_between(None, events[0] if events else None)
+        u = FAR * min(beyond, fmpq(-size * scene.shear))
     x, y = scene.floats(arc.at(u))
     length = math.hypot(x, y)
     return x / length, y / length
@@ -163,7 +170,7 @@ def _limit(scene: Scene, window: Window | None) -> fmpq:
         window = (min(xs) - reach, min(ys) - reach, max(xs) + reach, max(ys) + reach)
     x = max(abs(Fraction(window[0])), abs(Fraction(window[2])))
     y = max(abs(Fraction(window[1])), abs(Fraction(window[3])))
-    bound = (x + scene.shear * y) * scene.scale
+    bound = (x + scene.shear * y) * scene.ratio
     return fmpq(bound.numerator, bound.denominator)
 
 
@@ -173,10 +180,11 @@ def _open_range(arc: Arc, limit: fmpq) -> tuple[fmpq, fmpq]:
     with ctx.workprec(bits):
         low = arc.start.number.ball(bits).upper().fmpq() if arc.start else None
         high = arc.end.number.ball(bits).lower().fmpq() if arc.end else None
+    events = arc.slabs.events
     if low is None:
-        low = min(-limit, high if high is not None else -limit) - limit - 1
+        low = min(-limit, rational_between(None, events[0] if events else None)) - 1
     if high is None:
-        high = max(limit, low) + limit + 1
+        high = max(limit, rational_between(events[-1] if events else None, None)) + 1
     return low, high
 
 
