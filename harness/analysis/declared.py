@@ -15,15 +15,25 @@ DECLARED_OBJECTIVE = "smallest"
 
 @dataclass(frozen=True)
 class Declared:
-    """The declared model; ``defaults`` is whether the group uses the family's own parameters.
+    """The declared model; whether it is derived, or only expected; which parameters differ.
 
     A family declares one growth; with other parameters (more noise, say) it may not apply, so
-    only a group with the default parameters is a control.
+    only a group with the default parameters of a family whose growth is derived is a control.
     """
 
     model: Model
-    defaults: bool
+    derived: bool
     changed: tuple[str, ...]
+
+    @property
+    def defaults(self) -> bool:
+        """Whether the group uses the family's own parameters."""
+        return not self.changed
+
+    @property
+    def is_control(self) -> bool:
+        """Whether the growth is known, so that a verdict against it would be an error."""
+        return self.derived and self.defaults
 
 
 def declared_growth(key: Key) -> Declared | None:
@@ -39,4 +49,4 @@ def declared_growth(key: Key) -> Declared | None:
     changed = tuple(
         sorted(name for name, value in key.parameters.items() if defaults.get(name, value) != value)
     )
-    return Declared(BY_NAME[family.growth], not changed, changed)
+    return Declared(BY_NAME[family.growth], family.control, changed)

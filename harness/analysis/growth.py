@@ -92,7 +92,9 @@ def _growth(group: Group, headline: str, statistic: Statistic, draws: Floats | N
     )
     censored = tuple(bool(limit.high > value) for limit, value in zip(limits, values, strict=True))
     series = Series(n, values, draws, censored, whole=statistic != "mean")
-    tried = challenge(series, group.key.seed(headline, statistic))
+    # Without draws all statistics are one series: one seed, so that they get one verdict.
+    name = statistic if draws is not None else "maximum"
+    tried = challenge(series, group.key.seed(headline, name))
     low, high = interval(draws) if draws is not None else (None, None)
     return Growth(
         headline,

@@ -28,9 +28,13 @@ from harness.diagram.counts import Domain, Objective
 from harness.diagram.domain import Region
 from harness.diagram.locate import Locator, unsheared
 from harness.diagram.planar_map import PlanarMap, RationalPoint
-from harness.diagram.scene import Scene
+from harness.diagram.scene import Scene, coordinate_bits
 from harness.diagram.sweep import sweep
+from harness.errors import UserError
 from harness.geometry.instance import Instance
+
+LONGEST = 512
+"""Coordinates may span this many powers of two; beyond, separating roots would take minutes."""
 
 SHEARS = (1_009, 10_007, 299_993, 15_485_863, 1_000_000_007)
 
@@ -40,8 +44,17 @@ def build_reference(
 ) -> PlanarMap:
     """The exact diagram of ``instance`` inside the polygon ``corners`` (none: the plane).
 
-    ``corners``: counter-clockwise, no three in a row collinear.
+    ``corners``: counter-clockwise.
+
+    Raises:
+        UserError: coordinates that differ too much in size.
     """
+    span = coordinate_bits([p for s in instance.rational_segments() for p in s])
+    if span > LONGEST:
+        raise UserError(
+            f"{instance.label}: the coordinates span {span} powers of two from the finest digit to "
+            f"the largest value; the reference builder takes {LONGEST}"
+        )
     for shear in SHEARS:
         try:
             return _build(instance, domain, objective, corners, shear)

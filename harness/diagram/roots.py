@@ -102,7 +102,8 @@ def _root_sizes(polynomial: fmpz_poly) -> list[float]:
 
 
 def _squarefree_part(polynomial: fmpz_poly) -> fmpz_poly:
-    return polynomial // polynomial.gcd(polynomial.derivative())
+    squarefree = polynomial // polynomial.gcd(polynomial.derivative())
+    return squarefree // squarefree.content()
 
 
 def _isolate(polynomial: fmpz_poly) -> list[tuple[fmpq, fmpq]]:

@@ -21,6 +21,19 @@ from harness.diagram.counts import Objective
 RationalPoint = tuple[Fraction, Fraction]
 
 
+def integer_ratio(points: Sequence[RationalPoint]) -> Fraction:
+    """The factor that makes all coordinates integers without a common factor."""
+    denominator = math.lcm(*(c.denominator for point in points for c in point))
+    numerators = [int(c * denominator) for point in points for c in point]
+    return Fraction(denominator, math.gcd(*numerators) or 1)
+
+
+def coordinate_bits(points: Sequence[RationalPoint]) -> int:
+    """The length in bits of the longest coordinate, as an integer in the common finest unit."""
+    ratio = integer_ratio(points)
+    return max(int(abs(c) * ratio).bit_length() for point in points for c in point)
+
+
 class Scene:
     """n segments, their forms Q_i and L_i in (u, v), and exact comparison of visual angles.
 
@@ -37,9 +50,7 @@ class Scene:
     ) -> None:
         """``others``: further points (corners of the domain) that must become integers too."""
         corners = [point for segment in segments for point in segment] + list(others)
-        denominator = math.lcm(*(c.denominator for point in corners for c in point))
-        numerators = [int(c * denominator) for point in corners for c in point]
-        self.ratio = Fraction(denominator, math.gcd(*numerators) or 1)
+        self.ratio = integer_ratio(corners)
         self.scale = fmpq(self.ratio.numerator, self.ratio.denominator)
         self.shear = shear
         self.sense = 1 if objective == "smallest" else -1

@@ -26,7 +26,7 @@ def controls(study: Sequence[GroupGrowth]) -> list[tuple[GroupGrowth, Call, Call
     """The groups whose growth is known, with the calls on their maximum and their median."""
     found = []
     for analysed in study:
-        if analysed.declared is None or not analysed.declared.defaults:
+        if analysed.declared is None or not analysed.declared.is_control:
             continue
         name = analysed.declared.model.name
         maximum, median = (
@@ -45,7 +45,7 @@ def control_sentence(study: Sequence[GroupGrowth]) -> str:
     parts = [f"{calls.count(call)} {words}" for call, words in CALLS.items() if calls.count(call)]
     curves = len(calls) // 2
     noun = "curve" if curves == 1 else "curves"
-    return f"{curves} {noun} of known growth (maximum and median each): {', '.join(parts)}."
+    return f"{len(calls)} verdicts on {curves} {noun} of known growth: {', '.join(parts)}."
 
 
 def by_linear_claim(
@@ -93,13 +93,15 @@ def lines(
         text = f"  {label:{width}}  n ≤ {largest:>4}  maximum {maximum.verdict.label}"
         if not analysed.noise_free or median.verdict.label != maximum.verdict.label:
             text += f"; median {median.verdict.label}"
-        if analysed.declared is not None and analysed.declared.defaults:
+        if analysed.declared is not None and analysed.declared.is_control:
             name = analysed.declared.model.name
             calls = {curve.verdict.call(name) for curve in (maximum, median)}
             worst = next(
                 call for call in ("wrong", "undecided", "possible", "right") if call in calls
             )
             text += f"  (known: {analysed.declared.model.symbol}, {CALLS[worst]})"
+        elif analysed.declared is not None and analysed.declared.defaults:
+            text += f"  (expected: {analysed.declared.model.symbol})"
         result.append(text)
     sentence = control_sentence(study)
     if sentence:
