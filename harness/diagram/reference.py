@@ -33,7 +33,7 @@ from harness.diagram.sweep import sweep
 from harness.errors import UserError
 from harness.geometry.instance import Instance
 
-LONGEST = 512
+LONGEST = 400
 """Coordinates may span this many powers of two; beyond, separating roots would take minutes."""
 
 SHEARS = (1_009, 10_007, 299_993, 15_485_863, 1_000_000_007)
