@@ -11,7 +11,7 @@ Nothing is subdivided and nothing is rounded.  If the coordinates turn out not t
 events on one vertical line) everything is thrown away and done again with another shear.
 
 Time is O(n³) resultants of cubics and as many tests against all n segments; in practice n = 10 in
-the plane and n = 14 in a kernel take seconds.
+the plane and n = 18 in a kernel take seconds.
 """
 
 from __future__ import annotations
