@@ -15,10 +15,12 @@ from fractions import Fraction
 
 from flint import arb, ctx, fmpq, fmpz_mpoly
 
-from harness.diagram.algebra import FIRST_PRECISION, Point, Polynomial, U, V
+from harness.diagram.algebra import FIRST_PRECISION, Point, Polynomial, U, V, precisions
 from harness.diagram.counts import Objective
 
 RationalPoint = tuple[Fraction, Fraction]
+
+TINY = arb(2) ** -60
 
 
 def integer_ratio(points: Sequence[RationalPoint]) -> Fraction:
@@ -77,10 +79,17 @@ class Scene:
         return Point.rational(x + self.shear * y, y)
 
     def floats(self, point: Point) -> tuple[float, float]:
-        """The point in the coordinates of the input, rounded to doubles."""
-        with ctx.workprec(2 * FIRST_PRECISION):
-            u, v = point.balls(2 * FIRST_PRECISION)
-            return _to_float((u - self.shear * v) / self.scale), _to_float(v / self.scale)
+        """The point in the coordinates of the input, as doubles within 2^-53 of its size."""
+        for bits in precisions():
+            with ctx.workprec(bits):
+                u, v = point.balls(bits)
+                x, y = (u - self.shear * v) / self.scale, v / self.scale
+                if not (x.is_finite() and y.is_finite()):
+                    continue
+                size = abs(x).upper() + abs(y).upper()
+                if x.rad() <= size * TINY and y.rad() <= size * TINY:
+                    return _to_float(x), _to_float(y)
+        raise AssertionError  # precisions() raises first
 
     def line_through(self, a: RationalPoint, b: RationalPoint) -> Polynomial:
         """The oriented line ab as a polynomial that is positive to its left."""
@@ -201,4 +210,5 @@ class Scene:
 
 
 def _to_float(value: arb) -> float:
-    return float(value.mid())
+    """The double at the middle of a tight ball; zero if the ball contains it."""
+    return 0.0 if value.contains(0) else float(value.mid())

@@ -98,6 +98,10 @@ def parse_study(text: str, source: str) -> Study:
     return Study(name, description, Limits(seconds, mib), base_seed, tasks, text)
 
 
+#: More replicates or sizes than this in one sweep are a slip of the pen.
+MOST = 100_000
+
+
 def _tasks(sweep: Table, base_seed: int) -> Iterator[Task]:
     """The tasks of one sweep.  Raises UserError."""
     family = FAMILIES[choose(sweep, "family", sweep.text("family"), FAMILIES)]
@@ -105,6 +109,8 @@ def _tasks(sweep: Table, base_seed: int) -> Iterator[Task]:
     replicates = sweep.integer("replicates", 1)
     if replicates < 1:
         raise sweep.error("replicates", f"{replicates} must be at least 1")
+    if replicates > MOST:
+        raise sweep.error("replicates", f"{replicates} is more than {MOST}")
     combinations = list(_combinations(sweep.table("params")))
     default_domain: Domain = "kernel" if family.kind == "polygon" else "plane"
     domains = sweep.choices("domain", default_domain, DOMAINS)
@@ -167,4 +173,6 @@ def _sizes(sweep: Table) -> list[int]:
     if not 1.0 < factor < math.inf:
         raise span.error("factor", f"{factor:g} must be greater than 1")
     steps = math.floor(math.log(last / first) / math.log(factor) + 1e-9)
+    if steps > MOST:
+        raise span.error("factor", f"{factor!r} makes more than {MOST} sizes")
     return list(dict.fromkeys(round(first * factor**k) for k in range(steps + 1)))

@@ -225,3 +225,15 @@ def test_the_quick_study_has_controls_and_both_sides_of_the_claim() -> None:
     assert {"zigzag", "convex-weave", "cavity", "grid", "segments"} < families
     for family in families:
         assert len({task.n for task in tasks if task.family == family}) >= 5
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["replicates = 1000000000", "n = { from = 5, to = 9, factor = 1.0000000000000002 }"],
+)
+def test_absurd_numbers_are_refused_at_once(line, tmp_path):
+    path = tmp_path / "absurd.toml"
+    sizes = "" if line.startswith("n") else "n = 8\n"
+    path.write_text(f'name = "absurd"\n[[sweep]]\nfamily = "star"\n{sizes}{line}\n')
+    with pytest.raises(UserError, match="more than 100000"):
+        read_study(path)
