@@ -75,6 +75,9 @@ def write_instance(instance: Instance, path: str | os.PathLike[str]) -> None:
     writer = {".wkt": to_wkt, ".geojson": to_geojson}.get(target.suffix.lower(), Instance.to_json)
     text = writer(instance)
     try:
+        if target.exists() and not target.is_file():
+            target.write_text(text, encoding="utf-8")  # a device or pipe must not be replaced
+            return
         with tempfile.NamedTemporaryFile(
             "w", encoding="utf-8", dir=target.parent, prefix=f".{target.name}.", delete=False
         ) as scratch:

@@ -104,7 +104,9 @@ def test_cotangents_stay_in_their_range(diagram: PlanarMap) -> None:
         scale = 1 + np.abs(cot)
         assert np.all(cot >= low - 1e-6 * scale)
         assert np.all(cot <= high + 1e-6 * scale)
-        if {"infinity"}.isdisjoint(diagram.nodes[k].kind for k in (edge.start, edge.end) if k):
+        if {"infinity"}.isdisjoint(
+            diagram.nodes[k].kind for k in (edge.start, edge.end) if k is not None
+        ):
             # The range is not only valid but tight: close samples come close to both ends.
             close = edge.polyline(size / 1e6)[1:-1]
             cot = 1 / np.tan(visual_angle(close, diagram.instance.segments[edge.segments[0]]))

@@ -1,4 +1,4 @@
-"""A wrong map must not pass: every planted fault is caught, by the check meant for it."""
+"""A wrong map must not pass: every planted fault is caught."""
 
 from __future__ import annotations
 

@@ -303,3 +303,14 @@ def test_reading_geometry_needs_no_compiler():
         "assert 'numba' not in sys.modules"
     )
     subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
+
+
+def test_a_pipe_is_written_to_and_not_replaced(tmp_path):
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    instance = Instance.from_arrays("segments", [((0, 0), (1, 0))])
+    write_instance(instance, pipe)
+    assert json.loads(os.read(reader, 1000))["kind"] == "segments"
+    os.close(reader)
+    assert pipe.is_fifo()
