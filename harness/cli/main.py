@@ -77,6 +77,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     except OSError as error:
         where = f"{error.filename}: " if error.filename is not None else ""
         return _fail(f"{where}{error.strerror or error}")
+    except UnicodeError as error:
+        return _fail(f"text that cannot be read or written in this encoding: {error}")
     except KeyboardInterrupt:
         print("avd: interrupted", file=sys.stderr)
         return 130

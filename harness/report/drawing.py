@@ -76,6 +76,11 @@ def plot(
     _fill(axes, Layers(diagram), panel, nodes=nodes, labels=labels)
 
 
+def _printable(text: str | None) -> str:
+    """The text without what no file format can hold: control characters and lone surrogates."""
+    return "".join(c for c in text or "" if c.isprintable())
+
+
 def picture(
     diagram: PlanarMap,
     *,
@@ -98,7 +103,8 @@ def picture(
     legend = layers.legend(nodes)
     lines = math.ceil(len(legend) * LEGEND_COLUMN / (width - 2 * PAD))
     columns = math.ceil(len(legend) / lines)
-    text = counts_line(diagram, panels) if caption is None else caption
+    text = _printable(counts_line(diagram, panels) if caption is None else caption)
+    title = _printable(title)
 
     # Fixed places in inches, not a layout engine: what is known needs no search.
     frame = (width - PAD * (len(panels) + 1)) / len(panels)
@@ -111,10 +117,12 @@ def picture(
         place = (left / width, (bottom + PAD) / height, frame / width, tall / height)
         _fill(figure.add_axes(place), layers, panel, nodes=nodes, labels=labels)
     if text:
-        figure.text(0.5, (bottom - TEXT_LINE / 2) / height, text, ha="center", va="center")
+        figure.text(
+            0.5, (bottom - TEXT_LINE / 2) / height, text, ha="center", va="center", parse_math=False
+        )
     if title:
         middle = (height - PAD - TEXT_LINE / 2) / height
-        figure.text(0.5, middle, title, ha="center", va="center", weight="bold")
+        figure.text(0.5, middle, title, ha="center", va="center", weight="bold", parse_math=False)
     figure.legend(
         handles=legend,
         loc="lower center",

@@ -225,3 +225,8 @@ def test_marks_are_distinct() -> None:
     looks = {tuple(sorted(map(str, mark.items()))) for _, mark in NODE_MARKS.values()}
     assert len(looks) == len(NODE_MARKS)
     assert all(isinstance(Line2D([], [], **mark), Line2D) for _, mark in NODE_MARKS.values())
+
+
+@pytest.mark.parametrize("title", [r"$\frac{$", "\x01 bell", "\ud800", "50 % of $5"])
+def test_any_title_makes_a_wellformed_picture(square, title) -> None:
+    ET.fromstring(render(square, "svg", title=title, caption=title))
