@@ -171,10 +171,10 @@ def _note(active: list[Arc], slab: int) -> None:
         arc.branch[slab] = position
 
 
-def bisector_arcs(scene: Scene, region: Region, curve: Component, strip: Strip) -> list[Arc]:
+def bisector_arcs(scene: Scene, region: Region, curve: Component) -> list[Arc]:
     """The arcs of a component on which two different segments win on the two sides."""
     found = []
-    for arc in trace(curve.polynomial, list(curve.events.values()), strip):
+    for arc in trace(curve.polynomial, list(curve.events.values()), region.strip):
         slab = arc.sample_slab()
         p = arc.at(arc.slabs.sample(slab))
         tied = _tie_at(scene, curve, p)
@@ -200,12 +200,12 @@ def _tie_at(scene: Scene, curve: Component, p: Point) -> tuple[int, ...]:
     return ()
 
 
-def wall_arcs(region: Region, events: list[Point], strip: Strip) -> list[Arc]:
+def wall_arcs(region: Region, events: list[Point]) -> list[Arc]:
     """The boundary of the domain cut at all events on it; winners are filled in by the caller."""
     found = []
     for k, wall in enumerate(region.walls):
         on_wall = [p for p in events if region.wall_contains(k, p) and p.sign(wall) == 0]
-        for arc in trace(wall, on_wall, strip):
+        for arc in trace(wall, on_wall, region.strip):
             if region.wall_contains(k, arc.at(arc.slabs.sample(arc.sample_slab()))):
                 arc.is_wall = True
                 found.append(arc)

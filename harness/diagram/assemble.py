@@ -5,11 +5,13 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import cmp_to_key
 
-from harness.diagram.algebra import Point, compare_numbers
+from harness.diagram.algebra import Point
 from harness.diagram.arcs import Arc
 from harness.diagram.counts import NodeKind
 from harness.diagram.domain import Region
+from harness.diagram.fibres import compare_points
 from harness.diagram.planar_map import Cell, Edge, Node, Side, Walk, Wall
 from harness.diagram.scene import Scene
 from harness.diagram.sweep import Junction, Sweep, SweepError
@@ -231,16 +233,11 @@ class Assembly:
         Just left of the leftmost point of an outer boundary there is another face; left of the
         leftmost point of a hole there is the face itself, between the highest and the lowest arc.
         """
-        starts = [arc.start if forward else arc.end for arc, forward in walk]
-        if any(point is None for point in starts):
+        ends = [arc.start if forward else arc.end for arc, forward in walk]
+        starts = [point for point in ends if point is not None]
+        if len(starts) < len(ends):
             return False
-        leftmost = starts[0]
-        for point in starts[1:]:
-            assert leftmost is not None
-            assert point is not None
-            if compare_numbers(point.number, leftmost.number) < 0:
-                leftmost = point
-        assert leftmost is not None
+        leftmost = min(starts, key=cmp_to_key(compare_points))
         junction = self.junction_at[leftmost.number.key]
         return not junction.left and (junction.right[-1], True) in walk
 

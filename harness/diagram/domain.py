@@ -8,7 +8,8 @@ from flint import arb, fmpq, fmpz_mpoly
 
 from harness.diagram.algebra import Point, Polynomial, U, V
 from harness.diagram.fibres import Strip
-from harness.diagram.scene import RationalPoint, Scene
+from harness.diagram.planar_map import RationalPoint
+from harness.diagram.scene import Scene
 
 
 class Region:

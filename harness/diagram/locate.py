@@ -33,12 +33,10 @@ class Locator:
 
     def __call__(self, point: RationalPoint) -> int | None:
         """The cell's index, −1 outside the domain, None on an edge, a node or the boundary."""
-        x, y = (fmpq(c.numerator, c.denominator) * self.scene.scale for c in point)
-        u, v = x + self.scene.shear * y, y
-        p = Point.rational(u, v)
+        p = self.scene.sheared(point)
         if any(_passes_through(arc, p) for arc in self.arcs):
             return None
-        beside = self._beside(u, v)
+        beside = self._beside(p)
         under = [arc for arc in self.arcs if _spans(arc, beside) and arc.is_below(beside)]
         if under:
             face = self.faces[sorted_on_line(under, beside.coordinates[0])[-1]][1]
@@ -46,12 +44,12 @@ class Locator:
             face = self._lowest_face(beside)
         return self.cell_of.get(face, -1)
 
-    def _beside(self, u: fmpq, v: fmpq) -> Point:
-        """A point (u', v) with u' ≥ u that no arc and no event separates from (u, v).
+    def _beside(self, p: Point) -> Point:
+        """A point (u', v) with u' > u that no arc and no event separates from p = (u, v).
 
         Between u and u' no curve meets the horizontal line v, and no curve has an event.
         """
-        p = Point.rational(u, v)
+        _, v = p.coordinates
         obstacles = [p]
         for slabs in {id(arc.slabs): arc.slabs for arc in self.arcs}.values():
             obstacles += [e for e in slabs.events if compare_numbers(e.number, p.number) > 0]

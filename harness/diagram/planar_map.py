@@ -19,9 +19,10 @@ from numpy.typing import NDArray
 from scipy.cluster.hierarchy import DisjointSet
 
 from harness.diagram.counts import Counts, Domain, NodeKind, Objective
+from harness.geometry import coordinates
 from harness.geometry.instance import Instance
 
-RationalPoint = tuple[Fraction, Fraction]
+RationalPoint = coordinates.Point
 Window = tuple[float, float, float, float]
 VERTEX_KINDS = ("triple", "crossing", "saddle")
 

@@ -76,13 +76,13 @@ def _build(
     curves = components(scene, signs=(1,) if domain == "kernel" else (1, -1))
     register = Register()
     find_events(scene, region, curves, register)
-    arcs = [arc for curve in curves for arc in bisector_arcs(scene, region, curve, region.strip)]
+    arcs = [arc for curve in curves for arc in bisector_arcs(scene, region, curve)]
     ends = {p.number.key: p for arc in arcs for p in (arc.start, arc.end) if p is not None}
     ends |= {p.number.key: register.canonical(p) for p in region.corners}
     endpoints = frozenset(
         scene.sheared(point).coordinates for segment in scene.segments for point in segment
     )
-    swept = sweep([*arcs, *wall_arcs(region, list(ends.values()), region.strip)], endpoints)
+    swept = sweep([*arcs, *wall_arcs(region, list(ends.values()))], endpoints)
     parts = Assembly(scene, region, swept)
     return PlanarMap(
         instance=instance,

@@ -17,8 +17,7 @@ from flint import arb, ctx, fmpq, fmpz_mpoly
 
 from harness.diagram.algebra import FIRST_PRECISION, Point, Polynomial, U, V, precisions
 from harness.diagram.counts import Objective
-
-RationalPoint = tuple[Fraction, Fraction]
+from harness.diagram.planar_map import RationalPoint
 
 TINY = arb(2) ** -60
 
@@ -65,7 +64,7 @@ class Scene:
             (ax, ay), (bx, by) = self.integers(a), self.integers(b)
             x, y = U - shear * V, V
             self.q.append(Polynomial((ax - x) * (bx - x) + (ay - y) * (by - y)))
-            self.line.append(Polynomial((ax - x) * (by - y) - (ay - y) * (bx - x)))
+            self.line.append(self.line_through(a, b))
         self._ties: dict[tuple[int, int, int], Polynomial] = {}
         self._winners: dict[Point, tuple[int, ...]] = {}
 
