@@ -1,0 +1,269 @@
+"""Q, L and F over a triangle in Bernstein form, in doubles with a proven error bound.
+
+A *table* holds, for one segment and one triangle with (homogeneous) corners P₀, P₁, P₂, the nine
+numbers L₀ L₁ L₂ q₀₀ q₁₁ q₂₂ q₀₁ q₀₂ q₁₂: the values L(P_k) and the polar form of Q,
+
+    q(P, P') = ½((aw − P)·(bw' − P') + (aw' − P')·(bw − P)),      q(P, P) = Q(P),
+
+so that L = Σ λ_k L_k and Q = Σ λ_k λ_l q_kl in barycentric coordinates λ.  Halving a side halves
+sums of table entries (de Casteljau).  The ten Bernstein coefficients of the cubic
+
+    F^s = Q_i L_j − s Q_j L_i
+
+are sums of at most three products q·L with weights that add up to one.
+
+**Error bound.**  Let u = 2⁻⁵³, and for a segment let ML ≥ Σ|products| in every L_k, MQ likewise
+for q, at the corners of the root triangle.  The coordinate differences aw − P are computed in
+double-double arithmetic and rounded once, hence off by at most u relatively (plus 2⁻⁹⁵ of the
+size S of all coordinates, which `magnitude` covers by adding 2⁻⁴²S to each).  So an L_k is off by
+at most 5u·ML, a q_kl by at most 6u·MQ.  Each of d halvings adds one rounding of a number bounded
+by ML (MQ): after d of them the errors are at most (5 + d)u·ML and (6 + d)u·MQ, but for terms in
+u².  A product q·L is then off by (12 + 2d)u·MQ·ML, and a sum of three with the weights 2/3, 1/3
+adds at most 5 more roundings; two such sums are subtracted, one more.  Altogether
+
+    |error of a coefficient| ≤ (18 + 2d) u (MQ_i ML_j + MQ_j ML_i),
+
+for which :func:`error_factor` returns (24 + 2d)u; the slack covers the terms in u² and underflow.
+
+**Structural zeros.**  An entry 0.0 *is* zero (the corner lies on the segment's line, or is its
+endpoint, by construction); an entry that merely rounds to zero is replaced by ``TINY``, far below
+every error bound.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from harness.diagram.fast.jit import compiled
+
+TINY = 1e-100
+U = 2.0**-53
+
+# Positions in a table.
+L0, L1, L2, Q00, Q11, Q22, Q01, Q02, Q12 = range(9)
+#: Signs: −1, 0 (structurally zero), 1, or
+UNKNOWN = 2
+
+#: The coefficients 300, 030, 003, 210, 201, 120, 021, 102, 012, 111 that lie on the side opposite
+#: to each corner, counter-clockwise.
+SIDES = np.array([[1, 6, 8, 2], [2, 7, 4, 0], [0, 3, 5, 1]])
+#: For each index of order two (200, 020, 002, 110, 101, 011): the coefficients one step further
+#: towards corners 0, 1 and 2.
+STEPS = np.array([[0, 3, 4], [5, 1, 6], [7, 8, 2], [3, 5, 9], [4, 9, 7], [9, 6, 8]])
+
+
+@compiled
+def error_factor(depth):
+    """See the room's docstring."""
+    return (24.0 + 2.0 * depth) * U
+
+
+@compiled
+def mean(x, y):
+    """(x + y)/2, zero only if both are."""
+    value = 0.5 * (x + y)
+    if value == 0.0 and x != 0.0:
+        return TINY
+    return value
+
+
+@compiled
+def halve(parent, k, first, second):
+    """The tables of both halves of a triangle whose side opposite to corner k is halved.
+
+    With corners P (number k), Q, R in counter-clockwise order and M the middle of QR, they are
+    (P, Q, M) and (P, M, R).
+    """
+    if k == 0:
+        lp, lq, lr = parent[0], parent[1], parent[2]
+        pp, qq, rr = parent[3], parent[4], parent[5]
+        pq, pr, qr = parent[6], parent[7], parent[8]
+    elif k == 1:
+        lp, lq, lr = parent[1], parent[2], parent[0]
+        pp, qq, rr = parent[4], parent[5], parent[3]
+        pq, pr, qr = parent[8], parent[6], parent[7]
+    else:
+        lp, lq, lr = parent[2], parent[0], parent[1]
+        pp, qq, rr = parent[5], parent[3], parent[4]
+        pq, pr, qr = parent[7], parent[8], parent[6]
+    lm = mean(lq, lr)
+    pm = mean(pq, pr)
+    qm = mean(qq, qr)
+    mr = mean(qr, rr)
+    mm = mean(qm, mr)
+    first[0], first[1], first[2] = lp, lq, lm
+    first[3], first[4], first[5] = pp, qq, mm
+    first[6], first[7], first[8] = pq, pm, qm
+    second[0], second[1], second[2] = lp, lm, lr
+    second[3], second[4], second[5] = pp, mm, rr
+    second[6], second[7], second[8] = pm, pr, mr
+
+
+@compiled
+def product(t, s, out):
+    """The ten coefficients of Q_t·L_s (times three, except at the corners, where times one)."""
+    out[0] = t[3] * s[0]
+    out[1] = t[4] * s[1]
+    out[2] = t[5] * s[2]
+    third = 1.0 / 3.0
+    out[3] = (2.0 * t[6] * s[0] + t[3] * s[1]) * third
+    out[4] = (2.0 * t[7] * s[0] + t[3] * s[2]) * third
+    out[5] = (2.0 * t[6] * s[1] + t[4] * s[0]) * third
+    out[6] = (2.0 * t[8] * s[1] + t[4] * s[2]) * third
+    out[7] = (2.0 * t[7] * s[2] + t[5] * s[0]) * third
+    out[8] = (2.0 * t[8] * s[2] + t[5] * s[1]) * third
+    out[9] = (t[6] * s[2] + t[7] * s[1] + t[8] * s[0]) * third
+
+
+#: The products q·L in each coefficient, as positions in a table; −1 fills up.
+TERMS = np.array(
+    [
+        [[3, 0], [-1, -1], [-1, -1]],
+        [[4, 1], [-1, -1], [-1, -1]],
+        [[5, 2], [-1, -1], [-1, -1]],
+        [[6, 0], [3, 1], [-1, -1]],
+        [[7, 0], [3, 2], [-1, -1]],
+        [[6, 1], [4, 0], [-1, -1]],
+        [[8, 1], [4, 2], [-1, -1]],
+        [[7, 2], [5, 0], [-1, -1]],
+        [[8, 2], [5, 1], [-1, -1]],
+        [[6, 2], [7, 1], [8, 0]],
+    ]
+)
+#: The corners (a bit each) on whose multiplicities a coefficient depends.
+SUPPORT = np.array([1, 2, 4, 3, 5, 3, 6, 5, 6, 7])
+
+
+@compiled
+def coefficient(c, t, s):
+    """Coefficient c of Q_t·L_s."""
+    if c == 0:
+        return t[3] * s[0]
+    if c == 1:
+        return t[4] * s[1]
+    if c == 2:
+        return t[5] * s[2]
+    third = 1.0 / 3.0
+    if c == 3:
+        return (2.0 * t[6] * s[0] + t[3] * s[1]) * third
+    if c == 4:
+        return (2.0 * t[7] * s[0] + t[3] * s[2]) * third
+    if c == 5:
+        return (2.0 * t[6] * s[1] + t[4] * s[0]) * third
+    if c == 6:
+        return (2.0 * t[8] * s[1] + t[4] * s[2]) * third
+    if c == 7:
+        return (2.0 * t[7] * s[2] + t[5] * s[0]) * third
+    if c == 8:
+        return (2.0 * t[8] * s[2] + t[5] * s[1]) * third
+    return (t[6] * s[2] + t[7] * s[1] + t[8] * s[0]) * third
+
+
+@compiled
+def is_structural_zero(c, t, s, si, sj, far, alike):
+    """Whether coefficient c of Q_t sj L_s − Q_s si L_t is zero by construction.
+
+    ``far``: the corners at infinity, a bit each.  ``alike``: the two segments have the same
+    vector up to sign, so that at infinity their L are equal up to sign.
+    """
+    zero = True
+    for r in range(3):
+        q, l = TERMS[c, r, 0], TERMS[c, r, 1]
+        if q >= 0 and not ((t[q] == 0.0 or s[l] == 0.0) and (s[q] == 0.0 or t[l] == 0.0)):
+            zero = False
+    if zero:
+        return True
+    if alike and (SUPPORT[c] & ~far) == 0:
+        for k in range(3):
+            if SUPPORT[c] >> k & 1 and sj * s[k] != si * t[k]:
+                return False
+        return True
+    return False
+
+
+@compiled
+def surely_positive(t, s, si, sj, bound, far, alike):
+    """Whether Q_t sj L_s − Q_s si L_t > 0 in the interior of the triangle."""
+    some = False
+    for c in range(10):
+        value = sj * coefficient(c, t, s) - si * coefficient(c, s, t)
+        if value > bound:
+            some = True
+        elif value < -bound or not is_structural_zero(c, t, s, si, sj, far, alike):
+            return False
+    return some
+
+
+@compiled
+def cubic(t, s, si, sj, bound, far, alike, values, signs):
+    """Coefficients and certain signs of Q_t sj L_s − Q_s si L_t."""
+    for c in range(10):
+        value = sj * coefficient(c, t, s) - si * coefficient(c, s, t)
+        if value > bound:
+            signs[c] = 1
+        elif value < -bound:
+            signs[c] = -1
+        elif is_structural_zero(c, t, s, si, sj, far, alike):
+            signs[c] = 0
+            value = 0.0
+        else:
+            signs[c] = UNKNOWN
+        values[c] = value
+
+
+@compiled
+def collinear_quadratic(t, s, length_t, length_s, bound, values, signs):
+    """The same for two segments on one line: |L| is a common factor, what is left is
+
+    G = Q_t/length_t − Q_s/length_s times both lengths, raised to degree three.
+    """
+    g200 = t[3] * length_s - s[3] * length_t
+    g020 = t[4] * length_s - s[4] * length_t
+    g002 = t[5] * length_s - s[5] * length_t
+    g110 = t[6] * length_s - s[6] * length_t
+    g101 = t[7] * length_s - s[7] * length_t
+    g011 = t[8] * length_s - s[8] * length_t
+    third = 1.0 / 3.0
+    values[0], values[1], values[2] = g200, g020, g002
+    values[3] = (g200 + 2.0 * g110) * third
+    values[4] = (g200 + 2.0 * g101) * third
+    values[5] = (g020 + 2.0 * g110) * third
+    values[6] = (g020 + 2.0 * g011) * third
+    values[7] = (g002 + 2.0 * g101) * third
+    values[8] = (g002 + 2.0 * g011) * third
+    values[9] = (g110 + g101 + g011) * third
+    for c in range(10):
+        if values[c] > bound:
+            signs[c] = 1
+        elif values[c] < -bound:
+            signs[c] = -1
+        else:
+            signs[c] = UNKNOWN
+
+
+@compiled
+def value_and_gradient(b, x, y, out):
+    """F and its derivatives along corner 0 → 1 and 0 → 2 at λ = (1 − x − y, x, y)."""
+    z = 1.0 - x - y
+    # Quadratic controls after one step of de Casteljau, in the order 200 020 002 110 101 011.
+    c0 = z * b[0] + x * b[3] + y * b[4]
+    c1 = z * b[5] + x * b[1] + y * b[6]
+    c2 = z * b[7] + x * b[8] + y * b[2]
+    c3 = z * b[3] + x * b[5] + y * b[9]
+    c4 = z * b[4] + x * b[9] + y * b[7]
+    c5 = z * b[9] + x * b[6] + y * b[8]
+    d0 = z * c0 + x * c3 + y * c4
+    d1 = z * c3 + x * c1 + y * c5
+    d2 = z * c4 + x * c5 + y * c2
+    out[0] = z * d0 + x * d1 + y * d2
+    out[1] = 3.0 * (d1 - d0)
+    out[2] = 3.0 * (d2 - d0)
+
+
+@compiled
+def gradient_controls(b, out):
+    """The six control vectors of the gradient (along 0 → 1 and 0 → 2), shape (6, 2)."""
+    for r in range(6):
+        base = b[STEPS[r, 0]]
+        out[r, 0] = 3.0 * (b[STEPS[r, 1]] - base)
+        out[r, 1] = 3.0 * (b[STEPS[r, 2]] - base)

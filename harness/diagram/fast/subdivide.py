@@ -1,0 +1,475 @@
+"""Halving triangles until each is a leaf, with ever shorter lists of candidates.
+
+A triangle carries the segments that may still win somewhere in it.  A few of them, the winners
+at the corners and in the middle, serve as pivots: a candidate that a pivot beats on the whole
+triangle (ten Bernstein coefficients of one sign) is dropped.  If few are left and the triangle is
+a leaf (:mod:`harness.diagram.fast.classify`) it is recorded, otherwise a side is halved.
+
+The record of a root is a *token* per triangle in preorder, 0, 1, 2 for the corner opposite to the
+halved side or ``LEAF``, and the leaves in that order.  Candidates' tables lie on one stack.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from harness.diagram.fast.classify import (
+    all_pairs,
+    classify_definite,
+    classify_mixed,
+    is_blurred,
+    new_scratch,
+)
+from harness.diagram.fast.forms import coefficient, error_factor, halve, surely_positive
+from harness.diagram.fast.jit import compiled
+from harness.diagram.fast.leaves import EMPTY, FAILED, HARD
+from harness.diagram.fast.tables import root_table
+
+LEAF = 3
+#: Corners are exact in doubles: at most this many halvings between a corner and the root's.
+FINEST = 50
+#: After so many halvings without losing a candidate a triangle is handed over as hard.
+PATIENCE = 24
+
+
+@compiled
+def grown(array, needed):
+    """``array`` with room for ``needed`` rows, contents kept."""
+    if needed <= len(array):
+        return array
+    bigger = np.empty((max(needed, 2 * len(array)), *array.shape[1:]), array.dtype)
+    bigger[: len(array)] = array
+    return bigger
+
+
+@compiled
+def _line_sign(t, error):
+    """The sign of L on the triangle if it is certainly constant in its interior, else 0."""
+    positive = negative = 0
+    for k in range(3):
+        if t[k] > error:
+            positive += 1
+        elif t[k] < -error:
+            negative += 1
+        elif t[k] != 0.0:
+            return 0
+    if positive and negative:
+        return 0
+    return 1 if positive else (-1 if negative else 0)
+
+
+@compiled
+def _form_sign(t, error):
+    """1 if Q ≥ 0 on the triangle, −1 if Q ≤ 0, certainly; else 0."""
+    positive = negative = 0
+    for k in range(3, 9):
+        if t[k] > error:
+            positive += 1
+        elif t[k] < -error:
+            negative += 1
+        elif t[k] != 0.0:
+            return 0
+    if positive and negative:
+        return 0
+    return 1 if positive else (-1 if negative else 0)
+
+
+@compiled
+def beats(t, s, lt, ls, qt, qs, bound, far, alike):
+    """Whether the first candidate certainly wins against the second all over the triangle.
+
+    ``lt``, ``ls``: signs of L (0: not constant).  ``qt``, ``qs``: signs of Q (0: not constant).
+    """
+    if lt != 0 and ls != 0:
+        return surely_positive(t, s, lt, ls, bound, far, alike)
+    if qt == 1 and qs == -1:
+        return True
+    if lt != 0:  # |L_s| ≥ ±L_s: one of both suffices where Q_t ≥ 0
+        return qt == 1 and (
+            surely_positive(t, s, lt, 1.0, bound, far, alike)
+            or surely_positive(t, s, lt, -1.0, bound, far, alike)
+        )
+    if ls != 0:
+        return surely_positive(t, s, 1.0, ls, bound, far, alike) and surely_positive(
+            t, s, -1.0, ls, bound, far, alike
+        )
+    return False
+
+
+@compiled
+def collinear_beats(t, s, length_t, length_s, bound):
+    """The same for two segments on one line: G > 0."""
+    for k in range(3, 9):
+        if not t[k] * length_s - s[k] * length_t > bound:
+            return False
+    return True
+
+
+@compiled
+def _best_at(tables, start, m, corner):
+    """The candidate with the greatest Q/|L| at a corner (3: the middle), in doubles."""
+    best, bq, bl = -1, 0.0, 1.0
+    for a in range(m):
+        t = tables[start + a]
+        if corner < 3:
+            q, line = t[3 + corner], abs(t[corner])
+        else:
+            q = t[3] + t[4] + t[5] + 2.0 * (t[6] + t[7] + t[8])
+            line = abs(t[0] + t[1] + t[2])
+        if q == 0.0 and line == 0.0:
+            continue
+        if best < 0 or q * bl > bq * line:
+            best, bq, bl = a, q, line
+    return best
+
+
+@compiled
+def prune(tables, norms, ids, start, m, factor, far, definite, work, lines, lengths, classes):
+    """Drop candidates beaten by a pivot; the number left, moved to the front (stable)."""
+    pivots, lsign, qsign, beaten = work
+    count = 0
+    for corner in range(4):
+        best = _best_at(tables, start, m, corner)
+        new = best >= 0
+        for r in range(count):
+            new = new and pivots[r] != best
+        if new:
+            pivots[count] = best
+            count += 1
+    for a in range(m):
+        beaten[a] = 0
+        if definite:
+            lsign[a] = 1
+            qsign[a] = 0
+        else:
+            lsign[a] = _line_sign(tables[start + a], factor * norms[start + a, 0])
+            qsign[a] = _form_sign(tables[start + a], factor * norms[start + a, 1])
+    tests = 0
+    for a in range(m):
+        for r in range(count):
+            p = pivots[r]
+            if p == a or beaten[p]:
+                continue
+            tests += 1
+            if _tested(
+                tables, norms, ids, start, p, a, lsign, qsign, factor, far, lines, lengths, classes
+            ):
+                beaten[a] = 1
+                break
+    kept = 0
+    for a in range(m):
+        if not beaten[a]:
+            if kept != a:
+                tables[start + kept] = tables[start + a]
+                norms[start + kept] = norms[start + a]
+                ids[start + kept] = ids[start + a]
+                lsign[kept] = lsign[a]
+                qsign[kept] = qsign[a]
+            kept += 1
+    if 1 < kept <= 6:
+        kept = _prune_pairs(
+            tables, norms, ids, start, kept, lsign, qsign, beaten, factor, far, lines, lengths,
+            classes,
+        )
+    return kept, tests
+
+
+@compiled
+def _tested(tables, norms, ids, start, p, a, lsign, qsign, factor, far, lines, lengths, classes):
+    i, j = ids[start + p], ids[start + a]
+    t, s = tables[start + p], tables[start + a]
+    if lines[i] >= 0 and lines[i] == lines[j]:
+        bound = factor * (norms[start + p, 1] * lengths[j] + norms[start + a, 1] * lengths[i])
+        return collinear_beats(t, s, lengths[i], lengths[j], bound)
+    bound = factor * (
+        norms[start + p, 1] * norms[start + a, 0] + norms[start + a, 1] * norms[start + p, 0]
+    )
+    alike = classes[i] >= 0 and classes[i] == classes[j]
+    return beats(t, s, lsign[p], lsign[a], qsign[p], qsign[a], bound, far, alike)
+
+
+@compiled
+def _prune_pairs(
+    tables, norms, ids, start, m, lsign, qsign, beaten, factor, far, lines, lengths, classes
+):
+    for a in range(m):
+        beaten[a] = 0
+    for a in range(m):
+        for p in range(m):
+            if p != a and not beaten[p] and _tested(
+                tables, norms, ids, start, p, a, lsign, qsign, factor, far, lines, lengths, classes
+            ):
+                beaten[a] = 1
+                break
+    kept = 0
+    for a in range(m):
+        if not beaten[a]:
+            if kept != a:
+                tables[start + kept] = tables[start + a]
+                norms[start + kept] = norms[start + a]
+                ids[start + kept] = ids[start + a]
+                lsign[kept] = lsign[a]
+                qsign[kept] = qsign[a]
+            kept += 1
+    return kept
+
+
+@compiled
+def side_to_halve(tables, start, m, exponents, lsign):
+    """The corner opposite to the side along which the contest varies most.
+
+    The variation of F between the first candidate and some others, along each side, relative to
+    its size; a side that has been halved much more often than the others waits.
+    """
+    variation = np.zeros(3)
+    t = tables[start]
+    for a in range(1, min(m, 6)):
+        s = tables[start + a]
+        st = -1.0 if lsign[0] < 0 else 1.0
+        ss = -1.0 if lsign[a] < 0 else 1.0
+        c = np.empty(10)
+        size = 0.0
+        for r in range(10):
+            c[r] = ss * coefficient(r, t, s) - st * coefficient(r, s, t)
+            size = max(size, abs(c[r]))
+        if size == 0.0:
+            continue
+        along0 = max(abs(c[1] - c[6]), abs(c[6] - c[8]), abs(c[8] - c[2]), abs(c[3] - c[4]),
+                     abs(c[5] - c[9]), abs(c[9] - c[7]))
+        along1 = max(abs(c[2] - c[7]), abs(c[7] - c[4]), abs(c[4] - c[0]), abs(c[8] - c[9]),
+                     abs(c[9] - c[3]), abs(c[6] - c[5]))
+        along2 = max(abs(c[0] - c[3]), abs(c[3] - c[5]), abs(c[5] - c[1]), abs(c[4] - c[9]),
+                     abs(c[9] - c[6]), abs(c[7] - c[8]))
+        variation[0] += along0 / size
+        variation[1] += along1 / size
+        variation[2] += along2 / size
+    best = 0
+    for k in range(1, 3):
+        if variation[k] > variation[best]:
+            best = k
+    return best
+
+
+@compiled
+def subdivide(
+    order, triangles, corners_dd, weights, incident_first, incident, candidate_first, candidates,
+    segments, size, sense, definite, lines, lengths, classes, most,
+):
+    """Subdivide the root triangles numbered in ``order``.
+
+    ``triangles`` (r, 3): corners, counter-clockwise.  ``corners_dd`` (c, 4), ``weights`` (c,): see
+    :func:`harness.diagram.fast.tables.root_table`.  ``incident`` (CSR): the segments whose line
+    passes through a corner; 2·segment + 1 if the corner is its endpoint, else 2·segment.
+    ``candidates`` (CSR): segments to consider in each root.  ``definite``: every L is ≥ 0 on the
+    whole domain.  ``lines``, ``classes``: number of the common line, of the common vector up to
+    sign, or −1.  ``most``: triangles allowed.
+
+    Returns (tokens, leaf kinds, choices, first slot of each leaf, slots: place and owner, λ of
+    the corners of the leaves that are not empty, a point in each, root of each, first candidate
+    and candidates of the open leaves, statistics).
+    """
+    widest = 0
+    for r in order:
+        widest = max(widest, candidate_first[r + 1] - candidate_first[r])
+    tables = np.empty((4 * widest + 64, 9))
+    norms = np.empty((4 * widest + 64, 2))
+    ids = np.empty(4 * widest + 64, np.int64)
+    frames = np.zeros((256, 5), np.int64)  # start, count, depth, patience, far
+    corners = np.zeros((256, 9))
+    exponents = np.zeros((256, 3), np.int64)
+    tokens = np.empty(1024, np.int8)
+    kinds = np.empty(512, np.int8)
+    choices = np.empty(512, np.int8)
+    slots = np.empty((1024, 2), np.int32)
+    first_slot = np.empty(513, np.int64)
+    shapes = np.empty((256, 9))
+    points = np.empty((256, 2))
+    shape_roots = np.empty(256, np.int32)
+    open_first = np.empty(65, np.int64)
+    open_ids = np.empty(256, np.int64)
+    n_tokens = n_leaves = n_slots = n_shapes = n_open = n_open_ids = 0
+    scratch = new_scratch()
+    work = (
+        np.zeros(4, np.int64),
+        np.zeros(widest, np.int64),
+        np.zeros(widest, np.int64),
+        np.zeros(widest, np.int64),
+    )
+    sides = np.ones(4)
+    statistics = np.zeros(4, np.int64)
+    root_corners = np.empty((3, 4))
+    root_weights = np.empty(3)
+    for root in order:
+        first = candidate_first[root]
+        m = candidate_first[root + 1] - first
+        far = 0
+        for k in range(3):
+            root_corners[k] = corners_dd[triangles[root, k]]
+            root_weights[k] = weights[triangles[root, k]]
+            if root_weights[k] == 0.0:
+                far |= 1 << k
+        for a in range(m):
+            ids[a] = candidates[first + a]
+            zeros = ends = 0
+            for k in range(3):
+                corner = triangles[root, k]
+                for z in range(incident_first[corner], incident_first[corner + 1]):
+                    if incident[z] >> 1 == ids[a]:
+                        zeros |= 1 << k
+                        if incident[z] & 1:
+                            ends |= 1 << k
+            root_table(
+                segments[ids[a]], root_corners, root_weights, zeros, ends, size, sense, tables[a],
+                norms[a],
+            )
+        frames[0, 0], frames[0, 1], frames[0, 2], frames[0, 3], frames[0, 4] = 0, m, 0, 0, far
+        exponents[0] = 0
+        corners[0] = 0.0
+        for k in range(3):
+            corners[0, 4 * k] = 1.0
+        top = 1
+        while top > 0:
+            top -= 1
+            start, m, depth, patience, far = frames[top]
+            e = exponents[top].copy()
+            lam = corners[top].copy()
+            factor = error_factor(depth)
+            kept, tests = prune(
+                tables, norms, ids, start, m, factor, far, definite, work, lines, lengths, classes
+            )
+            statistics[0] += 1
+            statistics[1] += tests
+            patience = 0 if kept < m else patience + 1
+            m = kept
+            kind, ports, choice = FAILED, 0, 0
+            lsign, qsign = work[1], work[2]
+            if m == 1:
+                kind = EMPTY
+                scratch[4][0, 0], scratch[4][0, 1] = 1, 0
+            elif m <= 4:
+                mixed = False
+                for a in range(m):
+                    mixed = mixed or lsign[a] == 0
+                    if a < 4:
+                        sides[a] = lsign[a] if lsign[a] != 0 else 1
+                same_line = (
+                    m == 2 and lines[ids[start]] >= 0 and lines[ids[start]] == lines[ids[start + 1]]
+                )
+                if not mixed or same_line:
+                    all_pairs(
+                        tables, start, m, sides, norms, start, factor, far, classes, lines, lengths,
+                        ids, scratch,
+                    )
+                    kind, ports, choice = classify_definite(m, scratch)
+                    if kind == FAILED and is_blurred(m, scratch):
+                        kind = HARD
+                elif m == 2 and qsign[0] == 1 and qsign[1] == 1:
+                    i, j = ids[start], ids[start + 1]
+                    bound = factor * (
+                        norms[start, 1] * norms[start + 1, 0] + norms[start + 1, 1] * norms[start, 0]
+                    )
+                    alike = classes[i] >= 0 and classes[i] == classes[j]
+                    kind, ports, choice = classify_mixed(
+                        tables[start], tables[start + 1], lsign[0], lsign[1], bound, far, alike, scratch
+                    )
+            k = side_to_halve(tables, start, m, e, lsign) if kind == FAILED else 0
+            if kind == FAILED:
+                q, r = (k + 1) % 3, (k + 2) % 3
+                finer = max(e[q], e[r]) + 1
+                if finer > FINEST or (patience > PATIENCE and m <= 12) or statistics[0] > most:
+                    kind = HARD
+            tokens = grown(tokens, n_tokens + 1)
+            if kind == FAILED:
+                tokens[n_tokens] = k
+                n_tokens += 1
+                top_needed = start + 2 * m
+                tables = grown(tables, top_needed)
+                norms = grown(norms, top_needed)
+                ids = grown(ids, top_needed)
+                for a in range(m):
+                    parent = tables[start + a].copy()
+                    halve(parent, k, tables[start + m + a], tables[start + a])
+                    norms[start + m + a] = norms[start + a]
+                    ids[start + m + a] = ids[start + a]
+                if top + 2 > len(frames):
+                    frames = grown(frames, top + 2)
+                    corners = grown(corners, top + 2)
+                    exponents = grown(exponents, top + 2)
+                middle_far = (far >> q & 1) & (far >> r & 1)
+                # Second half (P, M, R) below, first half (P, Q, M) on top of the stack.
+                for half in range(2):
+                    f = top + half
+                    frames[f, 0] = start + half * m
+                    frames[f, 1] = m
+                    frames[f, 2] = depth + 1
+                    frames[f, 3] = patience
+                    x, y = (r, -1) if half == 0 else (q, -1)
+                    bits = far >> k & 1
+                    corners[f, 0:3] = lam[3 * k : 3 * k + 3]
+                    exponents[f, 0] = e[k]
+                    if half == 0:
+                        corners[f, 6:9] = lam[3 * r : 3 * r + 3]
+                        exponents[f, 2] = e[r]
+                        exponents[f, 1] = finer
+                        bits |= middle_far << 1 | (far >> r & 1) << 2
+                        for c in range(3):
+                            corners[f, 3 + c] = 0.5 * (lam[3 * q + c] + lam[3 * r + c])
+                    else:
+                        corners[f, 3:6] = lam[3 * q : 3 * q + 3]
+                        exponents[f, 1] = e[q]
+                        exponents[f, 2] = finer
+                        bits |= (far >> q & 1) << 1 | middle_far << 2
+                        for c in range(3):
+                            corners[f, 6 + c] = 0.5 * (lam[3 * q + c] + lam[3 * r + c])
+                    frames[f, 4] = bits
+                top += 2
+                continue
+            tokens[n_tokens] = LEAF
+            n_tokens += 1
+            kinds = grown(kinds, n_leaves + 1)
+            choices = grown(choices, n_leaves + 1)
+            first_slot = grown(first_slot, n_leaves + 2)
+            kinds[n_leaves] = kind
+            choices[n_leaves] = choice
+            first_slot[n_leaves] = n_slots
+            n_leaves += 1
+            count = max(ports, 1)
+            if kind == HARD:
+                count = 0
+            slots = grown(slots, n_slots + count)
+            for c in range(count):
+                slots[n_slots + c, 0] = scratch[4][c, 0]
+                slots[n_slots + c, 1] = ids[start + scratch[4][c, 1]]
+            n_slots += count
+            if kind != EMPTY:
+                shapes = grown(shapes, n_shapes + 1)
+                points = grown(points, n_shapes + 1)
+                shape_roots = grown(shape_roots, n_shapes + 1)
+                shapes[n_shapes] = lam
+                points[n_shapes] = scratch[6]
+                shape_roots[n_shapes] = root
+                n_shapes += 1
+                if kind == HARD or choice < 0:
+                    open_first = grown(open_first, n_open + 2)
+                    open_first[n_open] = n_open_ids
+                    open_ids = grown(open_ids, n_open_ids + m)
+                    for a in range(m):
+                        open_ids[n_open_ids + a] = ids[start + a]
+                    n_open_ids += m
+                    n_open += 1
+                    statistics[2 if kind == HARD else 3] += 1
+    first_slot[n_leaves] = n_slots
+    open_first[n_open] = n_open_ids
+    return (
+        tokens[:n_tokens].copy(),
+        kinds[:n_leaves].copy(),
+        choices[:n_leaves].copy(),
+        first_slot[: n_leaves + 1].copy(),
+        slots[:n_slots].copy(),
+        shapes[:n_shapes].copy(),
+        points[:n_shapes].copy(),
+        shape_roots[:n_shapes].copy(),
+        open_first[: n_open + 1].copy(),
+        open_ids[:n_open_ids].copy(),
+        statistics,
+    )
