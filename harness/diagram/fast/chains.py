@@ -68,16 +68,23 @@ def join_arcs(arcs, mate, inward, node_of_vertex, node_of_port, parent):
 
 
 @compiled
-def number_classes(parent):
-    """The number of every slot's class (in order of their least slots), and how many there are."""
+def number_classes(parent, owner):
+    """The number of every slot's class (in order of their least slots), and how many there are.
+
+    Slots without an owner are not in use and get −1.
+    """
     number = np.empty(len(parent), np.int64)
     count = 0
     for s in range(len(parent)):
-        if find(parent, s) == s:
+        if owner[s] < 0:
+            number[s] = -1
+            continue
+        root = find(parent, s)
+        if root == s:
             number[s] = count
             count += 1
         else:
-            number[s] = number[parent[s]] if parent[s] == find(parent, s) else number[find(parent, s)]
+            number[s] = number[root]
     return number, count
 
 

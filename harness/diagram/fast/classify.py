@@ -221,15 +221,27 @@ def trace_sides(m, w):
 
 
 @compiled
-def _corner_zeros_are_simple(m, w):
-    """At every corner at most one pair ties, where there are more than two candidates."""
+def _corners_are_plain(m, w):
+    """At every corner at most two candidates compete, where there are more than two in all.
+
+    That is so where at most one pair has a structural zero at the corner, or where one candidate
+    has them with all others (the corner is an endpoint of its segment) but these do not tie.
+    """
     signs = w[1]
     for corner in range(3):
         zeros = 0
         for a in range(m):
             for b in range(a + 1, m):
                 zeros += signs[a, b, corner] == 0
-        if zeros > 1:
+        if zeros <= 1:
+            continue
+        common = False
+        for a in range(m):
+            count = 0
+            for b in range(m):
+                count += b != a and signs[a, b, corner] == 0
+            common = common or count == zeros
+        if not common:
             return False
     return True
 
@@ -245,15 +257,12 @@ def _all_cones(m, w):
 
 @compiled
 def _ties_once(a, b, c, w):
-    """Whether three candidates certainly tie in at most one point (hull; cones are known)."""
-    if a > b:
-        a, b = b, a
-    if b > c:
-        b, c = c, b
-    if a > b:
-        a, b = b, a
-    bounds = w[2]
-    return hull_determinant(w[3][a, b], w[3][a, c], bounds[a, b], bounds[a, c]) != 0.0
+    """Whether three candidates certainly tie in at most one point (hull)."""
+    for x, y, z in ((a, b, c), (b, c, a), (c, a, b)):
+        i, j, k, l = min(x, y), max(x, y), min(x, z), max(x, z)
+        if hull_determinant(w[3][i, j], w[3][k, l], w[2][i, j], w[2][k, l]) != 0.0:
+            return True
+    return False
 
 
 @compiled
@@ -281,7 +290,7 @@ def classify_definite(m, w):
         return FAILED, 0, 0
     if m == 2:
         return _classify_pair(ports, w)
-    if m > 4 or not _corner_zeros_are_simple(m, w) or not _all_cones(m, w):
+    if m > 4 or not _corners_are_plain(m, w) or not _all_cones(m, w):
         return FAILED, 0, 0
     if m == 3:
         if not _ties_once(0, 1, 2, w):

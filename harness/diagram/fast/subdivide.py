@@ -252,7 +252,8 @@ def side_to_halve(tables, start, m, exponents, lsign):
 
 @compiled
 def subdivide(
-    order, triangles, corners_dd, weights, incident_first, incident, candidate_first, candidates,
+    order, triangles, corners_dd, weights, incident_first, incident, candidate_first, candidate_count,
+    candidates,
     segments, size, sense, definite, lines, lengths, classes, most,
 ):
     """Subdivide the root triangles numbered in ``order``.
@@ -260,7 +261,7 @@ def subdivide(
     ``triangles`` (r, 3): corners, counter-clockwise.  ``corners_dd`` (c, 4), ``weights`` (c,): see
     :func:`harness.diagram.fast.tables.root_table`.  ``incident`` (CSR): the segments whose line
     passes through a corner; 2·segment + 1 if the corner is its endpoint, else 2·segment.
-    ``candidates`` (CSR): segments to consider in each root.  ``definite``: every L is ≥ 0 on the
+    ``candidates``: segments to consider in each root, from ``candidate_first`` on.  ``definite``: every L is ≥ 0 on the
     whole domain.  ``lines``, ``classes``: number of the common line, of the common vector up to
     sign, or −1.  ``most``: triangles allowed.
 
@@ -270,7 +271,7 @@ def subdivide(
     """
     widest = 0
     for r in order:
-        widest = max(widest, candidate_first[r + 1] - candidate_first[r])
+        widest = max(widest, candidate_count[r])
     tables = np.empty((4 * widest + 64, 9))
     norms = np.empty((4 * widest + 64, 2))
     ids = np.empty(4 * widest + 64, np.int64)
@@ -301,7 +302,7 @@ def subdivide(
     root_weights = np.empty(3)
     for root in order:
         first = candidate_first[root]
-        m = candidate_first[root + 1] - first
+        m = candidate_count[root]
         far = 0
         for k in range(3):
             root_corners[k] = corners_dd[triangles[root, k]]

@@ -1,0 +1,182 @@
+"""The benchmark ``diagram``: building diagrams, from coordinates in memory to counts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import generators
+from harness.bench.benchmark import Benchmark, Case, Comparison, Fact, Measured, Target
+from harness.bench.timing import seconds_of, timed
+from harness.diagram import build
+from harness.diagram.checks import euler_holds
+from harness.geometry.compiling import LARGE
+from harness.geometry.instance import Instance
+from harness.geometry.kernel import kernel
+from harness.study.limits import Limits, peak_mib
+
+if TYPE_CHECKING:
+    from harness.diagram.counts import Counts
+    from harness.diagram.planar_map import PlanarMap
+    from harness.diagram.work import Work
+    from harness.study.task import Task
+
+CASES = (
+    Case(
+        "zigzag-1024",
+        family="zigzag",
+        n=1024,
+        domain="kernel",
+        target=Target(rate=30_000, mib=2048),
+    ),
+    Case("zigzag-128", family="zigzag", n=128, domain="kernel"),
+    Case("zigzag-2048", family="zigzag", n=2048, domain="kernel"),
+    Case(
+        "weave-512",
+        family="convex-weave",
+        n=512,
+        domain="kernel",
+        params={"delta": 0.9},
+        target=Target(rate=10_000),
+    ),
+    Case("star-1e6", family="star", n=10**6, domain="kernel", target=Target(seconds=3)),
+    Case(
+        "near-regular-1e5",
+        family="near-regular",
+        n=10**5,
+        domain="kernel",
+        target=Target(seconds=30),
+    ),
+    Case(
+        "grid-1000",
+        family="grid",
+        n=1000,
+        domain="plane",
+        params={"variant": "generic"},
+        target=Target(seconds=60, mib=4096),
+    ),
+    Case("square-grid-64", family="grid", n=64, domain="plane", target=Target(seconds=60)),
+    Case(
+        "regular-zigzag-128",
+        family="zigzag",
+        n=128,
+        domain="kernel",
+        params={"noise": 0},
+        target=Target(seconds=60),
+    ),
+    Case("segments-1000", family="segments", n=1000, domain="plane"),
+    Case("star-interior-1024", family="star", n=1024, domain="interior"),
+)
+"""Families have their default parameters where none are given: a zigzag is tilted by π/6, and
+the noise of the weaves is 10⁻³/n³."""
+
+QUICK = (
+    Case("zigzag-6", family="zigzag", n=6, domain="kernel"),
+    Case("zigzag-8", family="zigzag", n=8, domain="kernel"),
+    Case("square-grid-4", family="grid", n=4, domain="plane"),
+    Case("star-interior-4", family="star", n=4, domain="interior"),
+)
+
+COMPARISONS = (
+    Comparison("zigzag-2048", "zigzag-128", most=1.5),
+    Comparison("zigzag-8", "zigzag-6"),
+)
+
+FACTS = (
+    Fact("triangles", "triangles", "d"),
+    Fact("triangles_per_vertex", "per vertex", ".2f"),
+    Fact("leaves", "leaves", "d"),
+    Fact("share_floats", "floats", ".2%"),
+    Fact("share_balls", "balls", ".2%"),
+    Fact("share_exact", "exact", ".2%"),
+)
+"""The triangles that were looked at are the unit of work; the shares are those of the leaves
+decided by the float filter, by ball arithmetic and by exact arithmetic."""
+
+_FIRST = (("zigzag", 6, "kernel"), ("star", 4, "interior"), ("grid", 4, "plane"))
+
+
+def warm_up(builder: str, n: int) -> None:
+    """Build one tiny diagram in each domain, so that everything is compiled.
+
+    Kernels of large polygons have compiled loops of their own, so one such kernel is computed
+    if n is large.
+    """
+    for family, size, domain in _FIRST:
+        _built(Instance.from_generated(generators.generate(family, size)), domain, builder)
+    if n >= LARGE:  # each of the loops sees about half of the edges
+        kernel(Instance.from_generated(generators.generate("near-regular", 4 * LARGE)))
+
+
+def measure(task: Task, *, repeat: int, workers: int | None) -> Measured:
+    """Time building the diagram of a task, in the present process, ``repeat`` times.
+
+    ``workers``: how many the builder is to use; None leaves it to the builder.
+
+    Raises:
+        InsaneMap: Euler's identity fails.
+        UnsteadyResult: two repeats counted differently.
+    """
+    warming = seconds_of(warm_up, task.builder, task.n)
+    generated = generators.generate(task.family, task.n, task.seed, **dict(task.params))
+    options = {} if workers is None else {"workers": workers}
+    timings, (diagram, counts) = timed(
+        prepare=lambda: Instance.from_generated(generated),
+        run=lambda instance: _built(
+            instance, task.domain, task.builder, objective=task.objective, **options
+        ),
+        essence=lambda built: str(built[1].as_dict()),
+        repeat=repeat,
+    )
+    peak = peak_mib()  # now: the check below needs memory of its own
+    euler_holds(diagram)
+    work: Work | None = getattr(diagram, "work", None)  # the reference builder does not tell
+    return Measured(
+        timings=timings,
+        amount=counts.vertices,
+        counts=counts,
+        workers=work.workers if work is not None else workers or 1,
+        peak_mib=peak,
+        warm_up=warming,
+        facts=_facts(work, counts.vertices),
+    )
+
+
+def _built(
+    instance: Instance, domain: str, builder: str, **options: Any
+) -> tuple[PlanarMap, Counts]:
+    """The diagram and its counts, which the map makes when first asked."""
+    make: Callable[..., PlanarMap] = build  # the options are the builder's to refuse
+    diagram = make(instance, domain, builder=builder, **options)
+    return diagram, diagram.counts
+
+
+def _facts(work: Work | None, vertices: int) -> dict[str, float | None]:
+    """The columns ``FACTS``."""
+    if work is None:
+        return {fact.column: None for fact in FACTS}
+    return {
+        "triangles": work.triangles,
+        "triangles_per_vertex": _share(work.triangles, vertices),
+        "leaves": work.leaves,
+        "share_floats": _share(work.by_floats, work.leaves),
+        "share_balls": _share(work.by_balls, work.leaves),
+        "share_exact": _share(work.exactly, work.leaves),
+    }
+
+
+def _share(part: int, whole: int) -> float | None:
+    return part / whole if whole else None
+
+
+BENCHMARK = Benchmark(
+    name="diagram",
+    unit="vertices",
+    cases=CASES,
+    quick=QUICK,
+    comparisons=COMPARISONS,
+    facts=FACTS,
+    measure=measure,
+    warm_up=warm_up,
+    limits=Limits(seconds=1800, mib=8192),  # the targets allow 5 × 60 s and 4 GiB
+)

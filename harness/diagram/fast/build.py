@@ -1,0 +1,172 @@
+"""The fast builder: from an instance to the arrays of its diagram."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from harness.diagram.counts import Domain, Objective
+from harness.diagram.fast.hard import LocalMap, solve
+from harness.diagram.fast.leaves import EMPTY, HARD
+from harness.diagram.fast.prepare import Floats, Ints, Prepared, prepare
+from harness.diagram.fast.roots import Roots
+from harness.diagram.fast.sifting import sift_kernel, sift_regions
+from harness.diagram.fast.subdivide import subdivide
+from harness.diagram.planar_map import RationalPoint
+from harness.diagram.work import Contradiction
+from harness.geometry.kernel import Kernel
+
+MOST_TRIANGLES = 10**9
+
+
+@dataclass(eq=False)
+class Leaves:
+    """All leaves of all roots, in the order of ``order``; see :func:`subdivide`."""
+
+    order: Ints
+    tokens: Any
+    kinds: Any
+    choices: Any
+    first_slot: Ints
+    slots: Any
+    shapes: Floats
+    points: Floats
+    shape_roots: Any
+    open_first: Ints
+    open_ids: Ints
+    statistics: Ints
+
+
+def merged(parts: list[Any], orders: list[Ints]) -> Leaves:
+    """The leaves of several runs over different roots, one after the other."""
+
+    def joined(k: int) -> Any:
+        return np.concatenate([part[k] for part in parts])
+
+    def offsets(k: int) -> Ints:
+        ends = np.cumsum([0, *(part[k][-1] for part in parts)])
+        rows = [part[k][:-1] + end for part, end in zip(parts, ends[:-1], strict=True)]
+        return np.concatenate([*rows, ends[-1:]])
+
+    return Leaves(
+        order=np.concatenate(orders),
+        tokens=joined(0),
+        kinds=joined(1),
+        choices=joined(2),
+        first_slot=offsets(3),
+        slots=joined(4),
+        shapes=joined(5),
+        points=joined(6),
+        shape_roots=joined(7),
+        open_first=offsets(8),
+        open_ids=joined(9),
+        statistics=np.sum([part[10] for part in parts], axis=0),
+    )
+
+
+def find_leaves(
+    prepared: Prepared, roots: Roots, candidates: tuple[Ints, Ints, Ints], definite: bool,
+    sense: float, workers: int,
+) -> Leaves:
+    """Subdivide all roots, on several threads; the result does not depend on their number."""
+    coordinates, weights, incident_first, incident = roots.corners.arrays(prepared.scale)
+    first, count, flat = candidates
+
+    def run(order: Ints) -> Any:
+        return subdivide(
+            order, roots.triangles, coordinates, weights, incident_first, incident, first, count,
+            flat, prepared.segments, prepared.size, sense, definite, prepared.lines,
+            prepared.lengths, prepared.classes, MOST_TRIANGLES,
+        )
+
+    batches = list(_batches(len(roots.triangles), count))
+    if workers == 1:
+        return merged([run(batch) for batch in batches], batches)
+    with ThreadPoolExecutor(workers) as pool:
+        return merged(list(pool.map(run, batches)), batches)
+
+
+def _batches(roots: int, count: Ints) -> Iterator[Ints]:
+    """Consecutive roots, in batches of about the same number of candidates; none depends on the
+    number of workers."""
+    total = max(int(count.sum()) // 64, 64)
+    start = used = 0
+    for root in range(roots):
+        used += int(count[root])
+        if used >= total or root == roots - 1:
+            yield np.arange(start, root + 1)
+            start, used = root + 1, 0
+
+
+def candidates_of(
+    prepared: Prepared, roots: Roots, found: Kernel | None, spans: list[tuple[int, int]],
+    sense: float, definite: bool,
+) -> tuple[Ints, Ints, Ints]:
+    """Candidates of every root: first, count, and all of them."""
+    n, m = prepared.instance.n, len(found.sides) if found else 0
+    if spans and found is not None:
+        exact = roots.corners.exact
+        chain = np.empty((2 * m + 1, 2))
+        for k in range(m + 1):
+            chain[2 * k] = [float(c * prepared.scale) for c in exact[m + k % m]]
+            if k < m:
+                chain[2 * k + 1] = [float(c * prepared.scale) for c in exact[(k + 1) % m]]
+        return sift_kernel(
+            chain, m, n, prepared.segments, prepared.size, sense, prepared.lines,
+            prepared.lengths, prepared.classes,
+        )
+    coordinates, weights, _, _ = roots.corners.arrays(prepared.scale)
+    first, flat = sift_regions(
+        roots.regions, coordinates, weights, n, prepared.segments, prepared.size, sense, definite,
+        prepared.lines, prepared.lengths, prepared.classes,
+    )
+    region = np.where(roots.region_of < 0, len(roots.regions), roots.region_of)
+    return first[region], (first[1:] - first[:-1])[region], flat
+
+
+def exact_corners(roots: Roots, root: int, shape: Floats) -> list[RationalPoint]:
+    """The exact corners of a triangle inside a root.
+
+    Raises Contradiction if one is at infinity.
+    """
+    corners = [int(c) for c in roots.triangles[root]]
+    result = []
+    for row in shape.reshape(3, 3):
+        weights = [Fraction(x) for x in row]
+        w = sum(
+            (f * Fraction(roots.corners.weights[c]) for f, c in zip(weights, corners, strict=True)),
+            Fraction(0),
+        )
+        if w == 0:
+            raise Contradiction("a hard triangle at infinity")
+        x, y = (
+            sum(
+                (f * roots.corners.exact[c][axis] for f, c in zip(weights, corners, strict=True)),
+                Fraction(0),
+            )
+            / w
+            for axis in range(2)
+        )
+        result.append((x, y))
+    return result
+
+
+def solve_open(
+    prepared: Prepared, roots: Roots, leaves: Leaves, domain: Domain, objective: Objective
+) -> dict[int, LocalMap]:
+    """The local maps of all open leaves, by leaf."""
+    shaped = np.flatnonzero(leaves.kinds != EMPTY)
+    is_open = (leaves.kinds[shaped] == HARD) | (leaves.choices[shaped] < 0)
+    solved = {}
+    for number, row in enumerate(np.flatnonzero(is_open).tolist()):
+        low, high = leaves.open_first[number], leaves.open_first[number + 1]
+        corners = exact_corners(roots, int(leaves.shape_roots[row]), leaves.shapes[row])
+        solved[int(shaped[row])] = solve(
+            prepared.instance, leaves.open_ids[low:high].tolist(), corners, domain, objective
+        )
+    return solved

@@ -1,0 +1,169 @@
+"""From an instance to its fast diagram, and the record of its counts."""
+
+from __future__ import annotations
+
+import os
+from collections import Counter
+from dataclasses import dataclass
+
+import numpy as np
+
+from harness.diagram.counts import Counts, Domain, Objective
+from harness.diagram.fast import chains, domains
+from harness.diagram.fast.arrays import Arrays, glued, joined
+from harness.diagram.fast.build import Leaves, candidates_of, find_leaves, solve_open
+from harness.diagram.fast.nodes import (
+    AT_INFINITY,
+    BOUNDARY,
+    KINDS,
+    Nodes,
+    find_nodes,
+    unbounded_classes,
+)
+from harness.diagram.fast.prepare import Ints, Prepared, prepare
+from harness.diagram.fast.roots import Roots
+from harness.diagram.work import Contradiction, Work
+from harness.geometry.instance import Instance
+from harness.geometry.kernel import Kernel, kernel
+
+#: How often other free points are tried.
+SEEDS = 4
+
+
+@dataclass(eq=False)
+class FastDiagram:
+    """Everything about a diagram, as arrays.
+
+    ``edges`` (e, 6), ``edge_of_arc`` (a, 2): see :func:`harness.diagram.fast.chains.join_arcs`.
+    ``cell_of_slot`` (s,), ``cells``: their number.  ``unbounded``: cells that reach infinity.
+    """
+
+    prepared: Prepared
+    domain: Domain
+    objective: Objective
+    roots: Roots
+    leaves: Leaves
+    arrays: Arrays
+    nodes: Nodes
+    edges: Ints
+    edge_of_arc: Ints
+    cell_of_slot: Ints
+    cells: int
+    unbounded: set[int]
+    work: Work
+
+    @property
+    def instance(self) -> Instance:
+        """The instance."""
+        return self.prepared.instance
+
+    def cell_owners(self) -> Ints:
+        """The segment of every cell, (cells,)."""
+        owners = np.zeros(self.cells, dtype=np.int64)
+        used = self.cell_of_slot >= 0
+        owners[self.cell_of_slot[used]] = self.arrays.owner[used]
+        return owners
+
+    def counts(self) -> Counts:
+        """The record of what is counted, from the arrays; O(nodes + edges + cells)."""
+        kind, degree = self.nodes.kind, self.nodes.degree
+        numbers = Counter({KINDS[k]: int(c) for k, c in enumerate(np.bincount(kind, minlength=6))})
+        boundary = kind == BOUNDARY
+        is_vertex = kind <= KINDS.index("saddle")
+        degrees = np.bincount(degree[is_vertex])
+        return Counts(
+            domain=self.domain,
+            objective=self.objective,
+            builder="fast",
+            n=self.instance.n,
+            cells=self.cells,
+            edges=len(self.edges),
+            vertices=int(is_vertex.sum()),
+            regions=len(np.unique(self.cell_owners())),
+            loops=int((self.edges[:, 0] < 0).sum()),
+            components=int(
+                chains.count_components(
+                    len(kind), self.edges, kind == AT_INFINITY, boundary, self.domain != "plane"
+                )
+            ),
+            unbounded=len(self.unbounded),
+            boundary_points=int(boundary.sum()),
+            nodes={
+                **{name: c for name, c in numbers.items() if c},
+                "boundary": int(degree[boundary].sum()),
+            },
+            degrees={d: int(c) for d, c in enumerate(degrees) if c},
+            certified=True,
+        )
+
+
+def fast_diagram(
+    instance: Instance, domain: Domain, objective: Objective, workers: int | None = None
+) -> FastDiagram:
+    """The diagram of a validated instance; ``workers`` threads (by default, one per processor).
+
+    Raises Contradiction if no choice of free points worked.
+    """
+    found = kernel(instance) if domain != "plane" else None
+    prepared = prepare(instance, parallels=domain == "plane")
+    workers = workers or len(os.sched_getaffinity(0))
+    problem: Contradiction | None = None
+    for seed in range(SEEDS):
+        try:
+            return _attempt(prepared, domain, objective, found, seed, workers)
+        except Contradiction as error:
+            problem = error
+    assert problem is not None
+    raise problem
+
+
+def _attempt(
+    prepared: Prepared,
+    domain: Domain,
+    objective: Objective,
+    found: Kernel | None,
+    seed: int,
+    workers: int,
+) -> FastDiagram:
+    spans: list[tuple[int, int]] = []
+    if domain == "plane":
+        roots = domains.plane_roots(prepared.instance, seed)
+    elif domain == "kernel":
+        assert found is not None
+        roots, spans = domains.kernel_roots(prepared.instance, found, seed)
+    else:
+        assert found is not None
+        roots = domains.interior_roots(prepared.instance, found, seed)
+    sense = 1.0 if objective == "smallest" else -1.0
+    definite = domain == "kernel"
+    candidates = candidates_of(prepared, roots, found, spans, sense, definite)
+    leaves = find_leaves(prepared, roots, candidates, definite, sense, workers)
+    solved = solve_open(prepared, roots, leaves, domain, objective)
+    arrays = glued(roots, leaves, solved)
+    nodes = find_nodes(prepared, roots, leaves, arrays, domain == "plane")
+    edges, edge_of_arc = joined(arrays, nodes.of_port)
+    cell_of_slot, cells = chains.number_classes(arrays.parent, arrays.owner)
+    far = {int(cell_of_slot[s]) for s in unbounded_classes(arrays)} if domain == "plane" else set()
+    return FastDiagram(
+        prepared=prepared,
+        domain=domain,
+        objective=objective,
+        roots=roots,
+        leaves=leaves,
+        arrays=arrays,
+        nodes=nodes,
+        edges=edges,
+        edge_of_arc=edge_of_arc,
+        cell_of_slot=cell_of_slot,
+        cells=int(cells),
+        unbounded=far,
+        work=Work(
+            triangles=int(leaves.statistics[0]),
+            tests=int(leaves.statistics[1]),
+            leaves=len(leaves.kinds),
+            by_floats=len(leaves.kinds) - len(solved),
+            by_balls=0,
+            exactly=len(solved),
+            workers=workers,
+        ),
+    )

@@ -1,0 +1,341 @@
+"""Root triangles of the three domains; see :mod:`harness.diagram.fast.roots`."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable
+from fractions import Fraction
+
+import numpy as np
+
+from harness.diagram.fast.roots import Corners, Floats, Ints, Roots, between, free_number
+from harness.diagram.planar_map import RationalPoint
+from harness.diagram.work import Contradiction
+from harness.geometry.instance import Instance
+from harness.geometry.kernel import Kernel
+from harness.geometry.predicates import orientation
+
+
+def kernel_roots(instance: Instance, kernel: Kernel, seed: int) -> tuple[Roots, list[tuple[int, int]]]:
+    """Roots of a kernel with m sides, and the *spans* of the chord triangles.
+
+    The triangles 0 … m − 1 cut off the corners; triangle m + k has the span ``spans[k]``: all of
+    it lies beyond the chord from g_i to g_j, for i < j < i + m.
+    """
+    corners, m = Corners(), len(kernel.sides)
+    flat = _flat_points(instance, kernel)
+    if flat:
+        return _kernel_with_flat_points(instance, kernel, flat, seed)
+    ends = _endpoint_numbers(instance, kernel)
+    for k, point in enumerate(kernel.corners):
+        corners.add(point, ends[k], special=True)
+    for k in range(m):
+        a, b = kernel.corners[k], kernel.corners[(k + 1) % m]
+        corners.add(between(a, b, free_number(k, seed)), [2 * kernel.sides[k]])
+    triangles = [(m + (k - 1) % m, k, m + k) for k in range(m)]
+    walls = {}
+    for k in range(m):
+        walls[k, m + k] = k
+        walls[m + (k - 1) % m, k] = (k - 1) % m
+    spans: list[tuple[int, int]] = []
+    third, two_thirds = m // 3, 2 * m // 3
+    triangles.append((m, m + third, m + two_thirds))
+    spans.append((0, m))
+    todo = [(0, third), (third, two_thirds), (two_thirds, m)]
+    while todo:
+        low, high = todo.pop()
+        if high - low >= 2:
+            middle = (low + high) // 2
+            triangles.append((m + low % m, m + middle % m, m + high % m))
+            spans.append((low, high))
+            todo += [(low, middle), (middle, high)]
+    return _roots(corners, triangles, walls), spans
+
+
+def _roots(
+    corners: Corners, triangles: list[tuple[int, int, int]], walls: dict[tuple[int, int], int]
+) -> Roots:
+    """Roots that are not sifted in regions."""
+    none = np.zeros((0, 3), dtype=np.int64)
+    unsifted = np.full(len(triangles), -1, dtype=np.int64)
+    return Roots(corners, np.array(triangles, dtype=np.int64), walls, none, unsifted)
+
+
+def _endpoint_numbers(instance: Instance, kernel: Kernel) -> list[list[int]]:
+    """For every corner of the kernel the segments whose lines meet there."""
+    rows = []
+    for k, corner in enumerate(kernel.corners):
+        row = []
+        for edge in (kernel.sides[k - 1], kernel.sides[k]):
+            row.append(2 * edge + (corner in instance.rational_segment(edge)))
+        rows.append(row)
+    return rows
+
+
+def _flat_points(instance: Instance, kernel: Kernel) -> dict[int, list[RationalPoint]]:
+    """The polygon's vertices strictly inside sides of its kernel, in order along each side.
+
+    There are some only if several edges lie on one line: candidates are found in doubles.
+    """
+    vertices = instance.floats
+    size = float(np.ptp(vertices, axis=0).max())
+    found: dict[int, list[RationalPoint]] = {}
+    m = len(kernel.sides)
+    ends = kernel.floats
+    for k in range(m):
+        a, d = ends[k], ends[(k + 1) % m] - ends[k]
+        length = float(np.hypot(*d))
+        offset = vertices - a
+        across = np.abs(offset[:, 0] * d[1] - offset[:, 1] * d[0])
+        along = offset @ d
+        near = np.flatnonzero(
+            (across <= 1e-9 * size * length)
+            & (along > -1e-9 * size * length)
+            & (along < length * length + 1e-9 * size * length)
+        )
+        inside = [p for p in map(instance.exact_vertex, near.tolist())
+                  if _strictly_inside(kernel.corners[k], kernel.corners[(k + 1) % m], p)]
+        if inside:
+            start = kernel.corners[k]
+            found[k] = sorted(
+                inside, key=lambda p, s=start: abs(p[0] - s[0]) + abs(p[1] - s[1])
+            )
+    return found
+
+
+def _strictly_inside(a: RationalPoint, b: RationalPoint, p: RationalPoint) -> bool:
+    """Whether p lies in the open segment ab."""
+    if p in (a, b) or orientation(a, b, p) != 0:
+        return False
+    return min(a, b) < p < max(a, b)
+
+
+def _kernel_with_flat_points(
+    instance: Instance, kernel: Kernel, flat: dict[int, list[RationalPoint]], seed: int
+) -> tuple[Roots, list[tuple[int, int]]]:
+    """The kernel as a fan, if vertices of the polygon lie inside its sides."""
+    points: list[RationalPoint] = []
+    wall: list[int] = []
+    lines: list[int] = []
+    for k, corner in enumerate(kernel.corners):
+        for point in (corner, *flat.get(k, ())):
+            points.append(point)
+            wall.append(k)
+            lines.append(kernel.sides[k])
+    touching = segments_at(instance, points)
+    incident = []
+    for k, point in enumerate(points):
+        row = {edge: 2 * edge for edge in (lines[k - 1], lines[k])}
+        row |= {edge: 2 * edge + 1 for edge in touching[point]}
+        incident.append(sorted(row.values()))
+    return fan(points, incident, wall, free_point(kernel.corners, seed)), []
+
+
+def segments_at(
+    instance: Instance, points: Iterable[RationalPoint]
+) -> dict[RationalPoint, list[int]]:
+    """The segments that end at each of some points."""
+    found: dict[RationalPoint, list[int]] = {point: [] for point in points}
+    for k, segment in enumerate(instance.rational_segments()):
+        for point in segment:
+            if point in found:
+                found[point].append(k)
+    return found
+
+
+def free_point(corners: list[RationalPoint], seed: int) -> RationalPoint:
+    """A free point of a convex polygon, near the middle: a rounded mean with free weights."""
+    m = len(corners)
+    weights = [Fraction(1) + free_number(k, seed) / 8 for k in range(m)]
+    x = sum((w * c[0] for w, c in zip(weights, corners, strict=True)), Fraction(0)) / sum(weights)
+    y = sum((w * c[1] for w, c in zip(weights, corners, strict=True)), Fraction(0)) / sum(weights)
+    rounded = (Fraction(float(x)), Fraction(float(y)))
+    inside = all(
+        orientation(corners[k - 1], corners[k], rounded) > 0 for k in range(m)
+    )
+    return rounded if inside else (x, y)
+
+
+def fan(
+    points: list[RationalPoint],
+    incident: list[list[int]],
+    wall: list[int],
+    centre: RationalPoint,
+) -> Roots:
+    """The triangles from a point to the sides of a polygon that is star-shaped about it."""
+    corners, n = Corners(), len(points)
+    for point, row in zip(points, incident, strict=True):
+        corners.add(point, row, special=True)
+    middle = corners.add(centre)
+    triangles = [(middle, k, (k + 1) % n) for k in range(n)]
+    walls = {(k, (k + 1) % n): wall[k] for k in range(n)}
+    return _roots(corners, triangles, walls)
+
+
+def interior_roots(instance: Instance, kernel: Kernel, seed: int) -> Roots:
+    """Roots of the interior of a polygon."""
+    n = instance.n
+    order = range(n) if instance.orientation > 0 else range(n - 1, -1, -1)
+    points = [instance.exact_vertex(k) for k in order]
+    touching = segments_at(instance, points)
+    incident = [[2 * edge + 1 for edge in touching[point]] for point in points]
+    wall = list(range(n))
+    if kernel.has_interior:
+        return fan(points, incident, wall, free_point(kernel.corners, seed))
+    return refined(points, incident, clipped_ears(points), {(k, (k + 1) % n): k for k in wall}, seed)
+
+
+def clipped_ears(points: list[RationalPoint]) -> list[tuple[int, int, int]]:
+    """A triangulation of a simple polygon by its vertices: O(n²) to O(n³), for few vertices."""
+    left = list(range(len(points)))
+    triangles = []
+    while len(left) > 3:
+        for at in range(len(left)):
+            a, b, c = left[at - 1], left[at], left[(at + 1) % len(left)]
+            pa, pb, pc = points[a], points[b], points[c]
+            if orientation(pa, pb, pc) > 0 and not any(
+                _in_triangle(points[p], pa, pb, pc) for p in left if p not in (a, b, c)
+            ):
+                triangles.append((a, b, c))
+                del left[at]
+                break
+        else:
+            # Only flat corners are left between others: they cannot be cut off as triangles.
+            raise Contradiction("the polygon has no ear")
+    triangles.append((left[0], left[1], left[2]))
+    return triangles
+
+
+def _in_triangle(p: RationalPoint, a: RationalPoint, b: RationalPoint, c: RationalPoint) -> bool:
+    """Whether p lies in a closed counter-clockwise triangle."""
+    return orientation(a, b, p) >= 0 and orientation(b, c, p) >= 0 and orientation(c, a, p) >= 0
+
+
+def refined(
+    points: list[RationalPoint],
+    incident: list[list[int]],
+    triangles: list[tuple[int, int, int]],
+    walls: dict[tuple[int, int], int],
+    seed: int,
+) -> Roots:
+    """A triangulation in which no two of the given points (but along walls) are neighbours.
+
+    Every triangle gets a free point, every side that is no wall a free point close to it, on the
+    line from its middle to the free point of one of its triangles.
+    """
+    corners = Corners()
+    for point, row in zip(points, incident, strict=True):
+        corners.add(point, row, special=bool(row))
+    middles = []
+    for t, (a, b, c) in enumerate(triangles):
+        u, v = free_number(3 * t, seed), free_number(3 * t + 1, seed)
+        on_side = between(points[a], points[b], u)
+        x, y = between(on_side, points[c], v * Fraction(2, 3))
+        rounded = (Fraction(float(x)), Fraction(float(y)))
+        inside = _strictly_in(rounded, points[a], points[b], points[c])
+        middles.append(corners.add(rounded if inside else (x, y)))
+    across: defaultdict[frozenset[int], list[int]] = defaultdict(list)
+    for t, corner in enumerate(triangles):
+        for k in range(3):
+            across[frozenset((corner[k], corner[(k + 1) % 3]))].append(t)
+    bend: dict[frozenset[int], int] = {}
+    result, region_of = [], []
+    for t, corner in enumerate(triangles):
+        for k in range(3):
+            a, b = corner[k], corner[(k + 1) % 3]
+            side = frozenset((a, b))
+            if (a, b) in walls or len(across[side]) == 1 or not (incident[a] and incident[b]):
+                result.append((middles[t], a, b))
+                region_of.append(t)
+                continue
+            if side not in bend:
+                bend[side] = _bend(corners, points, a, b, middles, across[side], len(bend), seed)
+            result += [(middles[t], a, bend[side]), (middles[t], bend[side], b)]
+            # The free point beside the side may lie outside this triangle.
+            region_of += [-1 if across[side][0] != t else t] * 2
+    regions = np.array(triangles, dtype=np.int64)
+    return Roots(corners, np.array(result, dtype=np.int64), walls, regions, np.array(region_of))
+
+
+def _strictly_in(p: RationalPoint, a: RationalPoint, b: RationalPoint, c: RationalPoint) -> bool:
+    return orientation(a, b, p) > 0 and orientation(b, c, p) > 0 and orientation(c, a, p) > 0
+
+
+def _bend(
+    corners: Corners,
+    points: list[RationalPoint],
+    a: int,
+    b: int,
+    middles: list[int],
+    sides: list[int],
+    number: int,
+    seed: int,
+) -> int:
+    """A free point beside the side ab, in one of its two triangles and visible from both middles."""
+    on_side = between(points[a], points[b], free_number(number, seed + 1))
+    first, second = corners.exact[middles[sides[0]]], corners.exact[middles[sides[1]]]
+    t = free_number(number, seed + 2) / 64
+    if orientation(points[a], points[b], first) < 0:
+        a, b = b, a
+    for _ in range(60):
+        point = between(on_side, first, t)
+        if (
+            orientation(second, point, points[a]) > 0
+            and orientation(second, points[b], point) > 0
+        ):
+            return corners.add(point)
+        t /= 16
+    raise Contradiction("no room for a free point beside a side")
+
+
+def plane_roots(instance: Instance, seed: int) -> Roots:
+    """Roots of the whole plane."""
+    from scipy.spatial import Delaunay
+
+    segments = instance.rational_segments()
+    touching: defaultdict[RationalPoint, list[int]] = defaultdict(list)
+    for k, segment in enumerate(segments):
+        for point in segment:
+            touching[point].append(2 * k + 1)
+    points = list(touching)
+    floats = np.array([[float(x), float(y)] for x, y in points])
+    low, high = floats.min(axis=0), floats.max(axis=0)
+    centre, reach = (low + high) / 2, float(np.ptp(floats, axis=0).max())
+    turn = 0.3 + 0.7 * float(free_number(1, seed))
+    corners_far = [
+        (
+            Fraction(float(centre[0] + 6 * reach * np.cos(turn + 2 * np.pi * k / 3))),
+            Fraction(float(centre[1] + 6 * reach * np.sin(turn + 2 * np.pi * k / 3))),
+        )
+        for k in range(3)
+    ]
+    incident = [touching[p] for p in points] + [[], [], []]
+    points += corners_far
+    floats = np.concatenate([floats, [[float(x), float(y)] for x, y in corners_far]])
+    simplices = Delaunay((floats - centre) / reach).simplices
+    triangles = []
+    for a, b, c in simplices.tolist():
+        turn_sign = orientation(points[a], points[b], points[c])
+        if turn_sign == 0:
+            raise Contradiction("the triangulation of the endpoints is degenerate")
+        triangles.append((a, b, c) if turn_sign > 0 else (a, c, b))
+    inner = refined(points, incident, triangles, {}, seed)
+    n = len(points)
+    far = [
+        inner.corners.add(
+            (Fraction(float(p[0]) - float(centre[0])), Fraction(float(p[1]) - float(centre[1]))),
+            weight=0.0,
+        )
+        for p in corners_far
+    ]
+    outer = []
+    for k in range(3):
+        a, b, da, db = n - 3 + k, n - 3 + (k + 1) % 3, far[k], far[(k + 1) % 3]
+        outer += [(b, a, da), (b, da, db)]
+    return Roots(
+        inner.corners,
+        np.concatenate([inner.triangles, outer]),
+        {},
+        inner.regions,
+        np.concatenate([inner.region_of, np.full(len(outer), -1)]),
+    )

@@ -1,0 +1,131 @@
+"""The nodes of a fast diagram: kinds, points, segments, degrees."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from harness.diagram.counts import NodeKind
+from harness.diagram.fast.arrays import Arrays, CornerNode, corner_nodes
+from harness.diagram.fast.build import Leaves
+from harness.diagram.fast.glue import find
+from harness.diagram.fast.leaves import CROSSING, EMPTY, SADDLE
+from harness.diagram.fast.prepare import Floats, Ints, Prepared
+from harness.diagram.fast.roots import INFINITY, Roots
+from harness.geometry.instance import Instance
+from harness.geometry.predicates import orientation
+
+KINDS: tuple[NodeKind, ...] = ("triple", "crossing", "saddle", "endpoint", "boundary", "infinity")
+TRIPLE, CROSS, SADDLE_NODE, ENDPOINT, BOUNDARY, AT_INFINITY = range(6)
+
+
+@dataclass(eq=False)
+class Nodes:
+    """``kind`` (m,): numbers of KINDS.  ``degree`` (m,).  Vertices of leaves come first, then
+    ``corners`` (special corners), then single ports on walls and at infinity.
+
+    ``of_port`` (s,): the node of a port, or −1.  ``ports`` (p,): the single ports.
+    """
+
+    kind: Ints
+    degree: Ints
+    corners: list[CornerNode]
+    ports: Ints
+    of_port: Ints
+
+
+def find_nodes(
+    prepared: Prepared, roots: Roots, leaves: Leaves, arrays: Arrays, in_plane: bool
+) -> Nodes:
+    """All nodes of glued leaves."""
+    n_vertices = len(arrays.vertices)
+    kind = np.zeros(n_vertices, dtype=np.int64)
+    leaf_kind = leaves.kinds[arrays.vertices[:, 0]] if n_vertices else np.zeros(0)
+    kind[leaf_kind == CROSSING] = CROSS
+    kind[leaf_kind == SADDLE] = SADDLE_NODE
+    for v, node in arrays.special.items():
+        kind[v] = KINDS.index(node.kind)
+    degree = np.diff(arrays.out_first)
+    corners = corner_nodes(roots, leaves, arrays)
+    of_port = np.full(len(arrays.place), -1, dtype=np.int64)
+    corner_kinds = []
+    for k, corner in enumerate(corners):
+        of_port[corner.ports] = n_vertices + k
+        corner_kinds.append(
+            corner_kind(prepared.instance, roots, arrays, corner) if in_plane else BOUNDARY
+        )
+    loose = np.flatnonzero((arrays.inward >= 0) & (arrays.mate < 0) & (of_port < 0))
+    of_port[loose] = n_vertices + len(corners) + np.arange(len(loose))
+    single = np.full(len(loose), AT_INFINITY if in_plane else BOUNDARY)
+    return Nodes(
+        kind=np.concatenate([kind, np.array(corner_kinds, dtype=np.int64), single]),
+        degree=np.concatenate(
+            [degree, [len(corner.ports) for corner in corners], np.ones(len(loose), dtype=np.int64)]
+        ).astype(np.int64),
+        corners=corners,
+        ports=loose,
+        of_port=of_port,
+    )
+
+
+def owners_around(arrays: Arrays, corner: CornerNode) -> list[int]:
+    """The segments whose cells meet at a special corner."""
+    around: set[int] = set()
+    for port in corner.ports:
+        half = int(arrays.inward[port])
+        around |= {int(arrays.owner[s]) for s in arrays.arcs[half >> 1, 2:]}
+    return sorted(around)
+
+
+def corner_kind(instance: Instance, roots: Roots, arrays: Arrays, corner: CornerNode) -> int:
+    """The kind of a node at a segment's endpoint in the plane.
+
+    With up to two edges it is an ``endpoint``; with more a vertex: a crossing if the point lies on
+    the extension of another segment whose cell is there (angle 0), else a triple point or saddle.
+    """
+    if len(corner.ports) < 3:
+        return ENDPOINT
+    around = owners_around(arrays, corner)
+    p = roots.corners.exact[corner.corner]
+    for k in around:
+        a, b = instance.rational_segment(k)
+        on_line = p not in (a, b) and orientation(a, b, p) == 0
+        if on_line and (a[0] - p[0]) * (b[0] - p[0]) + (a[1] - p[1]) * (b[1] - p[1]) > 0:
+            return CROSS
+    return TRIPLE if len(around) >= 3 else SADDLE_NODE
+
+
+def vertex_points(roots: Roots, leaves: Leaves, arrays: Arrays) -> Floats:
+    """Coordinates of the vertices of all leaves, (v, 2), as doubles."""
+    shape_of_leaf = np.cumsum(leaves.kinds != EMPTY) - 1
+    rows = shape_of_leaf[arrays.vertices[:, 0]]
+    x, y = leaves.points[rows, 0], leaves.points[rows, 1]
+    shapes = leaves.shapes[rows].reshape(-1, 3, 3)
+    weights = np.einsum("vk,vkc->vc", np.stack([1 - x - y, x, y], axis=1), shapes)
+    return root_points(roots, leaves.shape_roots[rows], weights)
+
+
+def root_points(roots: Roots, root: Ints, weights: Floats) -> Floats:
+    """The points with given barycentric weights (k, 3) in given roots (k,), shape (k, 2).
+
+    Where the point is at infinity, its direction.
+    """
+    exact = np.array([[float(x), float(y)] for x, y in roots.corners.exact]).reshape(-1, 2)
+    corner_weights = np.array(roots.corners.weights)
+    corners = roots.triangles[root]
+    summed = np.einsum("vc,vcd->vd", weights, exact[corners])
+    w = (weights * corner_weights[corners]).sum(axis=1)
+    return summed / np.where(w == 0, 1, w)[:, None]
+
+
+def unbounded_classes(arrays: Arrays) -> set[int]:
+    """Classes of slots that reach infinity."""
+    result = set()
+    for root, k in np.argwhere(arrays.opposite == INFINITY).tolist():
+        port, _, first, _ = arrays.sides[root, k].tolist()
+        result.add(int(find(arrays.parent, first)))
+        while port >= 0:
+            result.add(int(find(arrays.parent, port)))
+            port = int(arrays.following[port])
+    return result

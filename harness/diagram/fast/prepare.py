@@ -1,0 +1,120 @@
+"""An instance as the arrays on which the compiled parts of the fast builder work."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+
+from harness.diagram.fast.roots import double_double
+from harness.geometry.instance import Instance
+from harness.geometry.predicates import orientation
+
+Ints = NDArray[np.int64]
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Prepared:
+    """``segments`` (n, 8): ax, ay, bx, by as double-doubles, times ``scale`` (a power of two).
+
+    ``size``: the greatest coordinate, in absolute value.  ``lines`` (n,): a number for every line
+    that holds several segments, −1 for the other segments.  ``classes`` (n,): likewise for equal
+    vectors b − a, up to sign.  ``lengths`` (n,): |b − a|, used between segments of one line.
+    """
+
+    instance: Instance
+    segments: Floats
+    scale: Fraction
+    size: float
+    lines: Ints
+    classes: Ints
+    lengths: Floats
+
+
+def prepare(instance: Instance, parallels: bool) -> Prepared:
+    """Arrays of an instance; ``parallels``: find equal vectors (needed at infinity only)."""
+    n = instance.n
+    largest = float(np.abs(instance.segments).max())
+    exponent = int(np.frexp(largest)[1]) if largest > 0 else 0
+    scale = Fraction(2) ** -exponent
+    segments = np.zeros((n, 8))
+    if instance.exact is None:
+        segments[:, 0::2] = np.ldexp(instance.segments.reshape(n, 4), -exponent)
+    else:
+        for k, (a, b) in enumerate(instance.rational_segments()):
+            segments[k] = [part for c in (*a, *b) for part in double_double(c * scale)]
+    vectors = segments[:, [4, 6]] - segments[:, [0, 2]]
+    none = np.full(n, -1, dtype=np.int64)
+    return Prepared(
+        instance=instance,
+        segments=segments,
+        scale=scale,
+        size=float(np.abs(segments).max()),
+        lines=_common_lines(instance, segments[:, 0::2].reshape(n, 2, 2)),
+        classes=_equal_vectors(instance) if parallels else none,
+        lengths=np.hypot(vectors[:, 0], vectors[:, 1]),
+    )
+
+
+def _common_lines(instance: Instance, segments: Floats) -> Ints:
+    """Numbers of the lines that hold several segments.
+
+    A line is described by its direction (as a point of a circle, twice around) and the foot of the
+    perpendicular from the middle of everything; neighbours in these doubles are compared exactly.
+    """
+    from scipy.spatial import cKDTree
+
+    n = len(segments)
+    result = np.full(n, -1, dtype=np.int64)
+    centre = segments.reshape(-1, 2).mean(axis=0)
+    size = float(np.ptp(segments.reshape(-1, 2), axis=0).max())
+    d = segments[:, 1] - segments[:, 0]
+    length = np.hypot(d[:, 0], d[:, 1])
+    with np.errstate(all="ignore"):
+        u = d / length[:, None]
+        normal = np.stack([-u[:, 1], u[:, 0]], axis=1)
+        offset = ((segments[:, 0] - centre) * normal).sum(axis=1) / size
+    keys = np.column_stack(
+        [u[:, 0] ** 2 - u[:, 1] ** 2, 2 * u[:, 0] * u[:, 1], offset[:, None] * normal]
+    )
+    keys = np.nan_to_num(keys)
+    order = np.lexsort((keys[:, 1], np.round(keys[:, 0], 6)))
+    if n > 1 and not _has_neighbours(keys):
+        return result
+    groups: dict[int, list[int]] = defaultdict(list)
+    for i, j in sorted(cKDTree(keys).query_pairs(1e-7)):
+        if _same_line(instance, i, j):
+            number = result[i] if result[i] >= 0 else (result[j] if result[j] >= 0 else i)
+            result[i] = result[j] = number
+            groups[int(number)].append(j)
+    del order
+    return result
+
+
+def _has_neighbours(keys: Floats) -> bool:
+    """Whether two rows may be closer than 1e-7, by a sort of one combination of the columns."""
+    mixed = np.sort(keys @ np.array([0.7548776662, 0.5698402910, 0.8191725134, 0.3819660113]))
+    return bool((np.diff(mixed) < 4e-7).any())
+
+
+def _same_line(instance: Instance, i: int, j: int) -> bool:
+    a, b = instance.rational_segment(i)
+    c, d = instance.rational_segment(j)
+    return orientation(a, b, c) == 0 and orientation(a, b, d) == 0
+
+
+def _equal_vectors(instance: Instance) -> Ints:
+    """Numbers of the vectors b − a (up to sign) that several segments have."""
+    groups: defaultdict[tuple[Fraction, Fraction], list[int]] = defaultdict(list)
+    for k, (a, b) in enumerate(instance.rational_segments()):
+        vector = (b[0] - a[0], b[1] - a[1])
+        groups[max(vector, (-vector[0], -vector[1]))].append(k)
+    result = np.full(instance.n, -1, dtype=np.int64)
+    for number, members in enumerate(groups.values()):
+        if len(members) > 1:
+            result[members] = number
+    return result

@@ -1,0 +1,130 @@
+"""Root triangles: a triangulation of the domain whose inner sides are in general position.
+
+The subdivision is exact as long as no vertex of the diagram lies on a side of a triangle and no
+edge runs along one.  Input is often symmetric, so the sides must not be: every inner side has at
+least one corner at an arbitrarily chosen, *free* point, and at most one *special* corner, where
+something is known to happen: a segment's endpoint, a corner of the domain.  At special corners the
+forms that vanish are known by construction (``incident``).  (A free point that is not free enough
+shows as a contradiction and is replaced, with all others, by the next choice.)
+
+kernel    its corners c_k are special; on every side a free point g_k.  Triangles (g_{k−1}, c_k, g_k),
+          and halving chords of the polygon of the g_k.
+interior  of a star-shaped polygon: a fan about a free point of the kernel; of others: a
+          triangulation, refined as in the plane.
+plane     a Delaunay triangulation of all endpoints and a large free triangle about them; in every
+          triangle a free point, on every side between two endpoints a free point beside it.
+          Outside the large triangle, triangles with corners at infinity.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+
+from harness.diagram.work import Contradiction
+from harness.diagram.planar_map import RationalPoint
+
+Ints = NDArray[np.int64]
+Floats = NDArray[np.float64]
+#: What lies beyond a side of a root triangle that has no neighbour.
+WALL, INFINITY = -1, -2
+
+
+def double_double(value: Fraction) -> tuple[float, float]:
+    """The two doubles whose sum is nearest to a rational, up to 2⁻¹⁰⁶ of it."""
+    high = float(value)
+    return high, float(value - Fraction(high))
+
+
+@dataclass
+class Corners:
+    """Corners of triangles: exact, as double-doubles, and the forms that vanish there."""
+
+    exact: list[RationalPoint] = field(default_factory=list)
+    weights: list[float] = field(default_factory=list)
+    incident: list[list[int]] = field(default_factory=list)
+    special: list[bool] = field(default_factory=list)
+
+    def add(
+        self,
+        point: RationalPoint,
+        incident: Sequence[int] = (),
+        weight: float = 1.0,
+        special: bool = False,
+    ) -> int:
+        """Add a corner; its number.  ``incident``: 2·segment, + 1 if it is an endpoint."""
+        self.exact.append(point)
+        self.weights.append(weight)
+        self.incident.append(list(incident))
+        self.special.append(special)
+        return len(self.exact) - 1
+
+    def arrays(self, scale: Fraction) -> tuple[Floats, Floats, Ints, Ints]:
+        """Coordinates (c, 4) times ``scale``, weights (c,), and the incident segments in CSR form.
+
+        The coordinates of corners at infinity must be doubles.
+        """
+        coordinates = np.array(
+            [[*double_double(x * scale), *double_double(y * scale)] for x, y in self.exact],
+            dtype=np.float64,
+        ).reshape(-1, 4)
+        first = np.cumsum([0, *map(len, self.incident)])
+        flat = [z for row in self.incident for z in row]
+        return coordinates, np.array(self.weights), first, np.array(flat, dtype=np.int64)
+
+
+@dataclass(frozen=True, eq=False)
+class Roots:
+    """Root triangles with their candidates.
+
+    ``triangles`` (r, 3): corners, counter-clockwise.  ``walls`` maps (corner, corner) of a side on
+    the boundary to the number of the domain's side.  ``regions`` (k, 3): larger triangles on which
+    candidates are sifted first; ``region_of`` (r,): that of each root, or −1.
+    """
+
+    corners: Corners
+    triangles: Ints
+    walls: dict[tuple[int, int], int]
+    regions: Ints
+    region_of: Ints
+
+    def opposite(self) -> Ints:
+        """(r, 3): 3·root + side beyond the side opposite to each corner, or WALL or INFINITY.
+
+        Raises Contradiction if a side belongs to two triangles in the same sense, or to one only
+        without being a wall or at infinity.
+        """
+        r = len(self.triangles)
+        start = self.triangles[:, [1, 2, 0]].ravel().astype(np.int64)
+        end = self.triangles[:, [2, 0, 1]].ravel().astype(np.int64)
+        size = len(self.corners.exact)
+        keys, back = start * size + end, end * size + start
+        order = np.argsort(keys)
+        if (np.diff(keys[order]) == 0).any():
+            raise Contradiction("two root triangles overlap")
+        place = np.searchsorted(keys, back, sorter=order)
+        found = order[np.minimum(place, 3 * r - 1)]
+        matched = keys[found] == back
+        result = np.where(matched, found, WALL)
+        weights = np.array(self.corners.weights)
+        far = (weights[start] == 0) & (weights[end] == 0)
+        result[far] = INFINITY
+        for k in np.flatnonzero(~matched & ~far):
+            if (int(start[k]), int(end[k])) not in self.walls:
+                raise Contradiction("a side of a root triangle has no neighbour")
+        return result.reshape(r, 3)
+
+
+def free_number(k: int, seed: int) -> Fraction:
+    """A number in (1/4, 3/4) with 20 bits, well spread over k, different for every seed."""
+    golden = 0.6180339887498949 + 0.0137 * seed
+    return Fraction(int(((k * golden + 0.371 + 0.219 * seed) % 1 / 2 + 0.25) * 2**20), 2**20)
+
+
+def between(a: RationalPoint, b: RationalPoint, t: Fraction) -> RationalPoint:
+    """The point a + t(b − a)."""
+    return a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])
