@@ -31,6 +31,7 @@ ROOMS = (
     "diagram",
     "generators",
     "study",
+    "bench",
     "analysis",
     "report",
     "voronoi",

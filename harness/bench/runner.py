@@ -6,7 +6,7 @@ import contextlib
 import functools
 import threading
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
@@ -62,9 +62,9 @@ class Summary:
     missing: list[str]
 
     @property
-    def failed(self) -> int:
-        """How many instances have a row without timings."""
-        return sum(row["status"] != "ok" for row in self.rows)
+    def failed(self) -> list[Record]:
+        """The rows without timings."""
+        return [row for row in self.rows if row["status"] != "ok"]
 
 
 def run_benchmark(
@@ -92,16 +92,17 @@ def run_benchmark(
         try:
             compiling, loading = _first_calls(benchmark, cases, settings, stop)
             store.note(compiling_seconds=compiling, loading_seconds=loading)
-            for case, task, outcome in _progressing(benchmark, cases, settings, stop):
-                # The engine carries what `measure` returns and never looks into it.
-                measured = cast("Measured | None", outcome.measurement)
-                if measured is not None:
-                    found[case.name] = measured
-                row = bench_row(benchmark, case, task, outcome, measured, store.run)
-                store.put(row)
-                _log_failure(directory, case, outcome)
-                rows.append(row)
-                show(row)
+            with contextlib.closing(_run(benchmark, cases, settings, stop)) as results:
+                for case, task, outcome in results:
+                    # The engine carries what `measure` returns and never looks into it.
+                    measured = cast("Measured | None", outcome.measurement)
+                    if measured is not None:
+                        found[case.name] = measured
+                    row = bench_row(benchmark, case, task, outcome, measured, store.run)
+                    store.put(row)
+                    _log_failure(directory, case, outcome)
+                    rows.append(row)
+                    show(row)
             ratios = tuple(comparison.ratio(found) for comparison in benchmark.comparisons)
             store.note(comparisons=_told(benchmark, ratios))
         finally:
@@ -140,14 +141,12 @@ def _first_calls(
     return compiling, call(anew=False)
 
 
-def _progressing(
+def _run(
     benchmark: Benchmark, cases: Sequence[Case], settings: Settings, stop: threading.Event
-) -> Iterator[tuple[Case, Task, Outcome]]:
+) -> Generator[tuple[Case, Task, Outcome]]:
     """Run the cases in order and tell on standard error how far it is."""
     tasks = [case.task(settings.builder) for case in cases]
-    work = functools.partial(
-        benchmark.measure, repeat=settings.repeat, workers=settings.workers
-    )
+    work = functools.partial(benchmark.measure, repeat=settings.repeat, workers=settings.workers)
     results = run_local(tasks, cast("Work", work), benchmark.limits, 1, stop)
     statuses: Counter[str] = Counter()
     with (

@@ -6,14 +6,14 @@ import contextlib
 import gc
 import multiprocessing
 import os
+import signal
 import tempfile
 import threading
 import time
 from collections.abc import Callable, Hashable, Iterator
-from concurrent.futures import wait
+from multiprocessing import resource_tracker
+from multiprocessing.connection import Connection
 from typing import Any, TypeVar
-
-import pebble
 
 Subject = TypeVar("Subject")
 Result = TypeVar("Result")
@@ -72,19 +72,47 @@ def first_call(
     has kept and compiles (and keeps) what is missing or outdated.  ``function`` must be
     importable.  That a call fails is for those to tell who need its result.
     """
+    context = multiprocessing.get_context("spawn")
+    receiver, sender = context.Pipe(duplex=False)
+    process = context.Process(target=_send_seconds, args=(sender, function, arguments), daemon=True)
     with _empty_cache() if anew else contextlib.nullcontext():
-        start = pebble.concurrent.process(
-            daemon=True, context=multiprocessing.get_context("spawn")
-        )(seconds_of)
-        future: Any = start(function, *arguments)
         try:
-            while not future.done() and not stop.is_set():
-                wait([future], TICK)
-        finally:
-            future.cancel()  # kills the process; nothing happens if it is done
-        if not future.done() or future.cancelled() or future.exception() is not None:
+            with _interrupts_blocked():
+                process.start()
+            sender.close()  # or its end would go unnoticed
+            while not receiver.poll(TICK):
+                if stop.is_set():
+                    return None
+            found: float | None = receiver.recv()
+            return found
+        except EOFError:  # it died
             return None
-        return float(future.result())
+        finally:
+            process.kill()
+            process.join()
+            receiver.close()
+
+
+def _send_seconds(
+    sender: Connection, function: Callable[..., object], arguments: tuple[Any, ...]
+) -> None:
+    try:
+        found = seconds_of(function, *arguments)
+    except Exception:
+        sender.send(None)
+    else:
+        sender.send(found)
+
+
+@contextlib.contextmanager
+def _interrupts_blocked() -> Iterator[None]:
+    """Let processes that start meanwhile be deaf to Ctrl-C, which the terminal sends to all."""
+    resource_tracker.ensure_running()  # before: starting it would undo the block
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 @contextlib.contextmanager

@@ -14,12 +14,12 @@ from harness.errors import UserError
 
 #: The verbs in the order in which a newcomer meets them; each is a module of this room with
 #: ``register(subparsers)`` and ``run(args) -> int``.
-VERBS = ("count", "draw", "generate", "families", "study", "report")
+VERBS = ("count", "draw", "generate", "families", "study", "report", "bench")
 
 EPILOG = """\
 standard output is data, standard error is messages and progress
-exit status: 0 done, 1 bad input (one line says what), 2 usage, 3 some tasks of a study failed,
-130 interrupted (finished work is kept)
+exit status: 0 done, 1 bad input (one line says what), 2 usage, 3 some tasks of a study or a
+benchmark failed, 130 interrupted (finished work is kept)
 """
 
 
