@@ -467,11 +467,11 @@ def _gradient_and_hessian(values, hx, hy, x, y, out):
 
 
 @compiled
-def classify_mixed(t, s, la, lb, bound, far, alike, w):
-    """A leaf of two candidates of which at least one has its line through T; both Q ≥ 0.
+def classify_mixed(t, s, la, lb, q, bound, far, alike, w):
+    """A leaf of two candidates of which at least one has its line through T; both Q have the sign q.
 
     Let F± = Q_a L_b ∓ Q_b L_a.  As F₊F₋ = Q_a²L_b² − Q_b²L_a², candidate a wins where both have one
-    sign and b where they differ, so the pieces are named by the two signs and every zero of F₊
+    sign and b where they differ (if q = −1, the other way round), so the pieces are named by the two signs and every zero of F₊
     or F₋ is an edge.  With a cone for both, each zero set is one arc; the two meet only where
     Q_a L_b = Q_b L_a = 0: where both lines cross (angle 0), once at most and transversally.
     So if their ports alternate there is one crossing, otherwise none.
@@ -500,11 +500,11 @@ def classify_mixed(t, s, la, lb, bound, far, alike, w):
             return FAILED, 0, 0
         if plus != last_plus and minus != last_minus:
             # An endpoint's wedge, seen from its tip.  If a is mixed, F₊ + F₋ = 2Q_a L_b forbids
-            # that both have the sign of −L_b; if b is mixed, F₋ − F₊ = 2Q_b L_a.
+            # that both have the sign of −q L_b; if b is mixed, F₋ − F₊ = 2Q_b L_a.
             if la == 0 and lb != 0:
-                first_is_plus = last_plus != lb
+                first_is_plus = last_plus != q * lb
             elif lb == 0 and la != 0:
-                first_is_plus = last_plus != -la
+                first_is_plus = last_plus != -q * la
             else:
                 return FAILED, 0, 0
             count = _add(slots, curves, count, 2 * position, 0 if first_is_plus else 1)
@@ -538,9 +538,9 @@ def classify_mixed(t, s, la, lb, bound, far, alike, w):
             a = -a
         else:
             b = -b
-        slots[r, 1] = 0 if a == b else 1
+        slots[r, 1] = 0 if (a == b) == (q == 1) else 1
     if count == 0:
-        slots[0, 0], slots[0, 1] = 1, 0 if a == b else 1
+        slots[0, 0], slots[0, 1] = 1, 0 if (a == b) == (q == 1) else 1
         return EMPTY, 0, 0
     if count == 2:
         return (ARC, 2, 0) if curves[0] == curves[1] else (FAILED, 0, 0)

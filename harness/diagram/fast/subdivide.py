@@ -84,15 +84,16 @@ def beats(t, s, lt, ls, qt, qs, bound, far, alike):
         return surely_positive(t, s, lt, ls, bound, far, alike)
     if qt == 1 and qs == -1:
         return True
-    if lt != 0:  # |L_s| ≥ ±L_s: one of both suffices where Q_t ≥ 0
-        return qt == 1 and (
-            surely_positive(t, s, lt, 1.0, bound, far, alike)
-            or surely_positive(t, s, lt, -1.0, bound, far, alike)
-        )
-    if ls != 0:
-        return surely_positive(t, s, 1.0, ls, bound, far, alike) and surely_positive(
-            t, s, -1.0, ls, bound, far, alike
-        )
+    if lt != 0:  # |L_s| is ±L_s: one sign suffices where Q_t ≥ 0, else take both
+        one = surely_positive(t, s, lt, 1.0, bound, far, alike)
+        if qt == 1:
+            return one or surely_positive(t, s, lt, -1.0, bound, far, alike)
+        return one and surely_positive(t, s, lt, -1.0, bound, far, alike)
+    if ls != 0:  # likewise for |L_t|, where Q_s ≤ 0
+        one = surely_positive(t, s, 1.0, ls, bound, far, alike)
+        if qs == -1:
+            return one or surely_positive(t, s, -1.0, ls, bound, far, alike)
+        return one and surely_positive(t, s, -1.0, ls, bound, far, alike)
     return False
 
 
@@ -364,14 +365,15 @@ def subdivide(
                     kind, ports, choice = classify_definite(m, scratch)
                     if kind == FAILED and is_blurred(m, scratch):
                         kind = HARD
-                elif m == 2 and qsign[0] == 1 and qsign[1] == 1:
+                elif m == 2 and qsign[0] != 0 and qsign[0] == qsign[1]:
                     i, j = ids[start], ids[start + 1]
                     bound = factor * (
                         norms[start, 1] * norms[start + 1, 0] + norms[start + 1, 1] * norms[start, 0]
                     )
                     alike = classes[i] >= 0 and classes[i] == classes[j]
                     kind, ports, choice = classify_mixed(
-                        tables[start], tables[start + 1], lsign[0], lsign[1], bound, far, alike, scratch
+                        tables[start], tables[start + 1], lsign[0], lsign[1], qsign[0], bound, far,
+                        alike, scratch,
                     )
             k = side_to_halve(tables, start, m, e, lsign) if kind == FAILED else 0
             if kind == FAILED:
