@@ -35,8 +35,8 @@ def differences(
     """What tells two sane maps of one instance apart, in words; empty if nothing does.
 
     ``tolerance``: how far a node may be off, relatively to the size of the instance (or, outside
-    it, to the distance from it).  ``witnesses``: also locate each map's witness points in the
-    other.  O((nodes + edges) log) unless many nodes lie within the tolerance of each other.
+    it, to the distance from it).  ``witnesses``: also locate a witness of each map's cells in
+    the other.  O((nodes + edges) log) unless many nodes lie within the tolerance of each other.
     """
     found = list(_different_headers(one, other))
     if found:
@@ -277,10 +277,11 @@ def _verify(views: Views, partner: dict[Thing, Thing], frame: Frame) -> Iterator
 
 
 def _cells_elsewhere(one: PlanarMap, other: PlanarMap, cells: dict[int, int]) -> list[str]:
-    """The witness points of one map that the other locates in a cell that is no partner."""
-    points = [point for point, _ in one.witnesses]
+    """The cells of one map with a witness point that the other locates in no partner of theirs."""
+    point_in = {cell: point for point, cell in one.witnesses}
+    found = other.locate(list(point_in.values()))
     return [
-        f"{one.builder} has ({float(x):g}, {float(y):g}) in cell {cell}, {other.builder} in {found}"
-        for ((x, y), cell), found in zip(one.witnesses, other.locate(points), strict=True)
-        if found is not None and found != cells.get(cell, -1)
+        f"{one.builder} has ({float(x):g}, {float(y):g}) in cell {cell}, {other.builder} in {place}"
+        for (cell, (x, y)), place in zip(point_in.items(), found, strict=True)
+        if place is not None and place != cells.get(cell, -1)
     ][:_SHOWN]

@@ -1,0 +1,228 @@
+"""Builds with two builders, object by object: ``python -m tests.diagram.fast.agreement --help``.
+
+Failures are printed and written as instance files, which every verb reads; two more keys say domain
+and objective, a third what differs.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import time
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from concurrent.futures import TimeoutError as LateError
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pebble import ProcessExpired, ProcessPool
+
+from harness.diagram import build
+from harness.diagram.counts import DOMAINS, OBJECTIVES, Domain, Objective
+from harness.errors import UserError
+from harness.geometry.formats import parse_instance
+from harness.geometry.instance import Instance
+from harness.geometry.validation import validate
+from tests.diagram.fast.sources import SOURCES, instance
+from tests.diagram.same_map import differences
+
+#: Seconds for both builds of one small instance.
+PATIENCE = 60.0
+_SHRINKINGS = 400
+
+
+@dataclass(frozen=True)
+class Case:
+    """What is built."""
+
+    instance: Instance
+    domain: Domain
+    objective: Objective
+
+    def to_json(self, found: Sequence[str] = ()) -> str:
+        data = json.loads(self.instance.to_json())
+        data |= {"domain": self.domain, "objective": self.objective, "differences": list(found)}
+        return json.dumps(data, indent=1, ensure_ascii=False) + "\n"
+
+    @classmethod
+    def from_json(cls, text: str) -> Case:
+        data = json.loads(text)
+        return cls(parse_instance(text), data["domain"], data["objective"])
+
+
+def domains(made: Instance) -> tuple[Domain, ...]:
+    return DOMAINS if made.kind == "polygon" else ("plane",)
+
+
+def cases(source: str, seed: int, count: int, domain: Domain | None = None) -> Iterator[Case]:
+    """Every instance in every domain that there is of it, for both objectives."""
+    for index in range(count):
+        made = instance(source, seed, index)
+        for its in domains(made):
+            if domain in (None, its):
+                yield from (Case(made, its, objective) for objective in OBJECTIVES)
+
+
+def disagreements(case: Case, builder: str = "fast", judge: str = "reference") -> list[str]:
+    """What is wrong with a builder's map of a case, in words; nothing if the judge has it too.
+
+    A domain that both refuse is no disagreement.
+    """
+    arguments = case.instance, case.domain, case.objective
+    try:
+        expected = build(*arguments, builder=judge)
+    except UserError as refusal:
+        try:
+            build(*arguments, builder=builder)
+        except UserError as other:
+            return [] if str(other) == str(refusal) else [f"refused: {other}; not: {refusal}"]
+        return [f"not refused: {refusal}"]
+    found = build(*arguments, builder=builder)
+    found.sanity_check()
+    wrong = [
+        f"{name}: {mine} against {theirs}"
+        for (name, mine), theirs in zip(
+            found.counts.as_dict().items(), expected.counts.as_dict().values(), strict=True
+        )
+        if mine != theirs and name != "builder"
+    ]
+    return wrong + differences(found, expected)
+
+
+def examined(case: Case, builder: str = "fast") -> list[str]:
+    """As :func:`disagreements`, with an error as the only difference."""
+    try:
+        return disagreements(case, builder)
+    except Exception as error:  # any failure of a builder is what is looked for
+        return [f"{type(error).__name__}: {error}"]
+
+
+# --- shrinking -----------------------------------------------------------------------------------
+
+
+def smaller(made: Instance) -> Iterator[Instance]:
+    """The instance without one of its segments or vertices, then with fewer digits."""
+    values: Any = made.floats.tolist() if made.exact is None else made.exact
+    for k in range(made.n):
+        yield from _valid(made, [*values[:k], *values[k + 1 :]])
+    for scale in (1, 4, 2**10, 10**6):
+
+        def coarse(value: Any, scale: int = scale) -> Any:
+            if isinstance(value, (list, tuple)):
+                return [coarse(item) for item in value]
+            return round(value * scale) / scale
+
+        yield from _valid(made, coarse(values))
+
+
+def _valid(made: Instance, values: Any) -> Iterator[Instance]:
+    try:
+        candidate = Instance.from_arrays(made.kind, values)
+        validate(candidate)
+    except UserError:
+        return
+    if candidate.to_json() != Instance.from_arrays(made.kind, made.exact or made.floats).to_json():
+        yield candidate
+
+
+def shrunk(case: Case, builder: str = "fast", tries: int = _SHRINKINGS) -> Case:
+    """A case with fewer segments or digits that still fails."""
+    for candidate in smaller(case.instance):
+        tries -= 1
+        simpler = Case(candidate, case.domain, case.objective)
+        if tries > 0 and _domain_exists(simpler) and examined(simpler, builder):
+            return shrunk(simpler, builder, tries)
+    return case
+
+
+def _domain_exists(case: Case) -> bool:
+    try:
+        build(case.instance, case.domain, case.objective, builder="reference")
+    except UserError:
+        return False
+    return True
+
+
+# --- the long run --------------------------------------------------------------------------------
+
+
+def _examined_together(batch: list[Case], builder: str) -> list[list[str]]:
+    return [examined(case, builder) for case in batch]
+
+
+def failures(
+    every: Sequence[Case], builder: str, jobs: int, patience: float
+) -> Iterator[tuple[Case, list[str]]]:
+    """The cases that fail, in processes of their own that may hang or die."""
+    batches = [list(every[k : k + 6]) for k in range(0, len(every), 6)]
+    with ProcessPool(max_workers=jobs) as pool:
+        waiting = [
+            (batch, pool.schedule(_examined_together, args=(batch, builder), timeout=patience))
+            for batch in batches
+        ]
+        for batch, future in waiting:
+            try:
+                results = future.result()
+            except (LateError, ProcessExpired) as error:
+                results = [[f"{type(error).__name__} in a batch: {error}"]] * len(batch)
+            for case, found in zip(batch, results, strict=True):
+                if found:
+                    yield case, found
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Compare builders on many instances; 1 if any failed."""
+    parser = argparse.ArgumentParser(prog="agreement", description=__doc__)
+    parser.add_argument("--count", type=int, default=100, help="instances of every source")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--family", action="append", choices=[*SOURCES], help="only these sources")
+    parser.add_argument("--domain", choices=DOMAINS)
+    parser.add_argument("--builder", default="fast")
+    parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--timeout", type=float, default=PATIENCE, help="seconds for six builds")
+    parser.add_argument("--most", type=int, default=5, help="failures written for each source")
+    parser.add_argument("--shrink", action="store_true", help="also write smaller cases")
+    parser.add_argument("--out", type=Path, default=Path(), help="where failures are written")
+    parser.add_argument("files", nargs="*", type=Path, help="failures to try again")
+    options = parser.parse_args(arguments)
+    if options.files:
+        return _again(options.files, options.builder)
+    totals: Counter[str] = Counter()
+    for source in options.family or SOURCES:
+        start = time.perf_counter()
+        every = list(cases(source, options.seed, options.count, options.domain))
+        failed = 0
+        for case, found in failures(every, options.builder, options.jobs, options.timeout):
+            failed += 1
+            if failed <= options.most:
+                name = f"fail-{source}-{options.seed}-{failed}.json"
+                _report(case, found, options.out / name, options)
+        totals[source] = failed
+        seconds = time.perf_counter() - start
+        print(f"{source}: {failed} of {len(every)} failed, {seconds:.0f} s", flush=True)
+    return 1 if any(totals.values()) else 0
+
+
+def _report(case: Case, found: list[str], path: Path, options: argparse.Namespace) -> None:
+    path.write_text(case.to_json(found), encoding="utf-8")
+    print(f"{path}: {case.domain}, {case.objective}: {'; '.join(found[:3])}", flush=True)
+    if options.shrink and "in a batch" not in found[0]:
+        small = shrunk(case, options.builder)
+        away = path.with_name(f"small-{path.name}")
+        away.write_text(small.to_json(examined(small, options.builder)), encoding="utf-8")
+
+
+def _again(paths: Sequence[Path], builder: str) -> int:
+    """Try written failures again."""
+    failed = 0
+    for path in paths:
+        found = examined(Case.from_json(path.read_text(encoding="utf-8")), builder)
+        failed += bool(found)
+        print(f"{path}: {'; '.join(found[:3]) or 'agrees'}", flush=True)
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
