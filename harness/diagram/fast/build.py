@@ -21,7 +21,11 @@ from harness.diagram.planar_map import RationalPoint
 from harness.diagram.work import Contradiction
 from harness.geometry.kernel import Kernel
 
-MOST_TRIANGLES = 10**9
+MOST_TRIANGLES = 10**8
+
+
+#: lines, lengths, classes; first tie of each corner, ties.
+World = tuple[Ints, Floats, Ints, Ints, Ints]
 
 
 @dataclass(eq=False)
@@ -71,7 +75,7 @@ def merged(parts: list[Any], orders: list[Ints]) -> Leaves:
 
 def find_leaves(
     prepared: Prepared, roots: Roots, candidates: tuple[Ints, Ints, Ints], definite: bool,
-    sense: float, workers: int,
+    sense: float, workers: int, world: World,
 ) -> Leaves:
     """Subdivide all roots, on several threads; the result does not depend on their number."""
     coordinates, weights, incident_first, incident = roots.corners.arrays(prepared.scale)
@@ -80,8 +84,7 @@ def find_leaves(
     def run(order: Ints) -> Any:
         return subdivide(
             order, roots.triangles, coordinates, weights, incident_first, incident, first, count,
-            flat, prepared.segments, prepared.size, sense, definite, prepared.lines,
-            prepared.lengths, prepared.classes, MOST_TRIANGLES,
+            flat, prepared.segments, prepared.size, sense, definite, world, MOST_TRIANGLES,
         )
 
     batches = list(_batches(len(roots.triangles), count))
@@ -105,7 +108,7 @@ def _batches(roots: int, count: Ints) -> Iterator[Ints]:
 
 def candidates_of(
     prepared: Prepared, roots: Roots, found: Kernel | None, spans: list[tuple[int, int]],
-    sense: float, definite: bool,
+    sense: float, definite: bool, world: World,
 ) -> tuple[Ints, Ints, Ints]:
     """Candidates of every root: first, count, and all of them."""
     n, m = prepared.instance.n, len(found.sides) if found else 0
@@ -117,13 +120,12 @@ def candidates_of(
             if k < m:
                 chain[2 * k + 1] = [float(c * prepared.scale) for c in exact[(k + 1) % m]]
         return sift_kernel(
-            chain, m, n, prepared.segments, prepared.size, sense, prepared.lines,
-            prepared.lengths, prepared.classes,
+            chain, m, n, prepared.segments, prepared.size, sense, world
         )
     coordinates, weights, _, _ = roots.corners.arrays(prepared.scale)
     first, flat = sift_regions(
         roots.regions, coordinates, weights, n, prepared.segments, prepared.size, sense, definite,
-        prepared.lines, prepared.lengths, prepared.classes,
+        world,
     )
     region = np.where(roots.region_of < 0, len(roots.regions), roots.region_of)
     return first[region], (first[1:] - first[:-1])[region], flat

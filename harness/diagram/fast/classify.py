@@ -14,7 +14,10 @@ from harness.diagram.fast.forms import (
     UNKNOWN,
     collinear_quadratic,
     cubic,
+    divided_by_distance,
     gradient_controls,
+    relation,
+    sure_signs,
     value_and_gradient,
 )
 from harness.diagram.fast.jit import compiled
@@ -59,31 +62,56 @@ def new_scratch():
 
 
 @compiled
-def all_pairs(tables, start, m, sides, norms, first, factor, far, classes, lines, lengths, ids, w):
+def all_pairs(tables, start, m, sides, norms, factor, far, world, spots, ids, w):
     """F of all pairs a < b of candidates, and its opposite for b > a, into the scratch ``w``.
 
     ``sides``: the sign of L of every candidate on the triangle.
     """
     values, signs, bounds = w[0], w[1], w[2]
+    lines, lengths, classes, tie_first, ties = world
     for a in range(m):
         for b in range(a + 1, m):
             i, j = ids[start + a], ids[start + b]
             t, s = tables[start + a], tables[start + b]
             if lines[i] >= 0 and lines[i] == lines[j]:
-                bound = factor * (norms[first + a, 1] * lengths[j] + norms[first + b, 1] * lengths[i])
+                bound = factor * (norms[start + a, 1] * lengths[j] + norms[start + b, 1] * lengths[i])
                 collinear_quadratic(t, s, lengths[i], lengths[j], bound, values[a, b], signs[a, b])
             else:
                 bound = factor * (
-                    norms[first + a, 1] * norms[first + b, 0]
-                    + norms[first + b, 1] * norms[first + a, 0]
+                    norms[start + a, 1] * norms[start + b, 0]
+                    + norms[start + b, 1] * norms[start + a, 0]
                 )
-                alike = classes[i] >= 0 and classes[i] == classes[j]
-                cubic(t, s, sides[a], sides[b], bound, far, alike, values[a, b], signs[a, b])
+                known = relation(i, j, classes, tie_first, ties, spots)
+                cubic(t, s, sides[a], sides[b], bound, far, known, values[a, b], signs[a, b])
+                if known & 1 and _vanishes_far(signs[a, b], far):
+                    near = 0 if far == 6 else (1 if far == 5 else 2)
+                    divided_by_distance(values[a, b], signs[a, b], near)
+                    bound *= 9.0
+                    sure_signs(values[a, b], bound, signs[a, b])
             bounds[a, b] = bounds[b, a] = bound
             for c in range(10):
                 values[b, a, c] = -values[a, b, c]
                 sign = signs[a, b, c]
                 signs[b, a, c] = sign if sign == UNKNOWN else -sign
+
+
+@compiled
+def _vanishes_far(signs, far):
+    """Whether a cubic is zero by construction on a side at infinity."""
+    if far == 6:
+        k = 0
+    elif far == 5:
+        k = 1
+    elif far == 3:
+        k = 2
+    else:
+        return False
+    return (
+        signs[SIDES[k, 0]] == 0
+        and signs[SIDES[k, 1]] == 0
+        and signs[SIDES[k, 2]] == 0
+        and signs[SIDES[k, 3]] == 0
+    )
 
 
 @compiled
@@ -467,7 +495,7 @@ def _gradient_and_hessian(values, hx, hy, x, y, out):
 
 
 @compiled
-def classify_mixed(t, s, la, lb, q, bound, far, alike, w):
+def classify_mixed(t, s, la, lb, q, bound, far, known, w):
     """A leaf of two candidates of which at least one has its line through T; both Q have the sign q.
 
     Let F± = Q_a L_b ∓ Q_b L_a.  As F₊F₋ = Q_a²L_b² − Q_b²L_a², candidate a wins where both have one
@@ -477,8 +505,8 @@ def classify_mixed(t, s, la, lb, q, bound, far, alike, w):
     So if their ports alternate there is one crossing, otherwise none.
     """
     values, signs, controls, slots = w[0], w[1], w[3], w[4]
-    cubic(t, s, 1.0, 1.0, bound, far, alike, values[0, 1], signs[0, 1])
-    cubic(t, s, -1.0, 1.0, bound, far, alike, values[1, 0], signs[1, 0])
+    cubic(t, s, 1.0, 1.0, bound, far, known, values[0, 1], signs[0, 1])
+    cubic(t, s, -1.0, 1.0, bound, far, known, values[1, 0], signs[1, 0])
     for f in range(2):
         a, b = f, 1 - f
         if not has_cone(values[a, b], bound, controls[a, b]):

@@ -22,6 +22,7 @@ from harness.diagram.fast.nodes import (
 )
 from harness.diagram.fast.prepare import Ints, Prepared, prepare
 from harness.diagram.fast.roots import Roots
+from harness.diagram.fast.ties import Ties, tie_arrays, ties_at_corners
 from harness.diagram.work import Contradiction, Work
 from harness.geometry.instance import Instance
 from harness.geometry.kernel import Kernel, kernel
@@ -136,8 +137,16 @@ def _attempt(
         roots = domains.interior_roots(prepared.instance, found, seed)
     sense = 1.0 if objective == "smallest" else -1.0
     definite = domain == "kernel"
-    candidates = candidates_of(prepared, roots, found, spans, sense, definite)
-    leaves = find_leaves(prepared, roots, candidates, definite, sense, workers)
+    ties: Ties = set()
+    while True:
+        first, rows = tie_arrays(ties, len(roots.corners.exact))
+        world = (prepared.lines, prepared.lengths, prepared.classes, first, rows)
+        candidates = candidates_of(prepared, roots, found, spans, sense, definite, world)
+        leaves = find_leaves(prepared, roots, candidates, definite, sense, workers, world)
+        new = ties_at_corners(prepared.instance, roots, leaves)
+        if new <= ties:
+            break
+        ties |= new
     solved = solve_open(prepared, roots, leaves, domain, objective)
     arrays = glued(roots, leaves, solved)
     nodes = find_nodes(prepared, roots, leaves, arrays, domain == "plane")

@@ -99,22 +99,6 @@ def halve(parent, k, first, second):
     second[6], second[7], second[8] = pm, pr, mr
 
 
-@compiled
-def product(t, s, out):
-    """The ten coefficients of Q_t·L_s (times three, except at the corners, where times one)."""
-    out[0] = t[3] * s[0]
-    out[1] = t[4] * s[1]
-    out[2] = t[5] * s[2]
-    third = 1.0 / 3.0
-    out[3] = (2.0 * t[6] * s[0] + t[3] * s[1]) * third
-    out[4] = (2.0 * t[7] * s[0] + t[3] * s[2]) * third
-    out[5] = (2.0 * t[6] * s[1] + t[4] * s[0]) * third
-    out[6] = (2.0 * t[8] * s[1] + t[4] * s[2]) * third
-    out[7] = (2.0 * t[7] * s[2] + t[5] * s[0]) * third
-    out[8] = (2.0 * t[8] * s[2] + t[5] * s[1]) * third
-    out[9] = (t[6] * s[2] + t[7] * s[1] + t[8] * s[0]) * third
-
-
 #: The products q·L in each coefficient, as positions in a table; −1 fills up.
 TERMS = np.array(
     [
@@ -160,11 +144,31 @@ def coefficient(c, t, s):
 
 
 @compiled
-def is_structural_zero(c, t, s, si, sj, far, alike):
+def relation(i, j, classes, tie_first, ties, spots):
+    """What is known by construction about the pair i, j over a triangle, as bits.
+
+    Bit 0: the segments have the same vector up to sign, so that at infinity their L are equal up
+    to sign.  Bits 1 … 3: F⁺_ij is zero at corner 0, 1, 2 of the triangle; bits 4 … 6: F⁻_ij is.
+    ``spots``: the numbers of the triangle's corners among the corners of roots, or −1; at some
+    of these ties are known (``ties`` rows: i, j, 1 for F⁺ or 2 for F⁻ or 3, from ``tie_first``
+    on).
+    """
+    bits = 1 if classes[i] >= 0 and classes[i] == classes[j] else 0
+    for k in range(3):
+        if spots[k] >= 0:
+            for row in range(tie_first[spots[k]], tie_first[spots[k] + 1]):
+                if (ties[row, 0] == i and ties[row, 1] == j) or (
+                    ties[row, 0] == j and ties[row, 1] == i
+                ):
+                    bits |= (ties[row, 2] & 1) << (k + 1) | (ties[row, 2] >> 1) << (k + 4)
+    return bits
+
+
+@compiled
+def is_structural_zero(c, t, s, si, sj, far, known):
     """Whether coefficient c of Q_t sj L_s − Q_s si L_t is zero by construction.
 
-    ``far``: the corners at infinity, a bit each.  ``alike``: the two segments have the same
-    vector up to sign, so that at infinity their L are equal up to sign.
+    ``far``: the corners at infinity, a bit each.  ``known``: see :func:`relation`.
     """
     zero = True
     for r in range(3):
@@ -173,7 +177,9 @@ def is_structural_zero(c, t, s, si, sj, far, alike):
             zero = False
     if zero:
         return True
-    if alike and (SUPPORT[c] & ~far) == 0:
+    if c < 3 and known >> ((c + 1) if si * sj > 0 else (c + 4)) & 1:
+        return True
+    if known & 1 and (SUPPORT[c] & ~far) == 0:
         for k in range(3):
             if SUPPORT[c] >> k & 1 and sj * s[k] != si * t[k]:
                 return False
@@ -182,20 +188,69 @@ def is_structural_zero(c, t, s, si, sj, far, alike):
 
 
 @compiled
-def surely_positive(t, s, si, sj, bound, far, alike):
+def divided_by_distance(values, signs, k):
+    """Replace F by the quadratic G of F = w·G, raised to degree three again.
+
+    For two segments with the same vector (up to sign), over a triangle whose corners but k are at
+    infinity: all of F vanishes there.  w is λ_k times a constant, so that coefficient e of G is
+    3/(e_k + 1) times the coefficient of F one step further towards corner k.  The signs of the
+    raised form, with 9 times the bound, are left to the caller.
+    """
+    g = np.empty(6)
+    for r in range(6):
+        # Multiplicity of corner k in the index r: 2 at its own square, 1 at the mixed ones.
+        times = 2 if r == k else (1 if _MIXED[r, k] else 0)
+        g[r] = 3.0 / (times + 1) * values[STEPS[r, k]]
+    raise_degree(g[0], g[1], g[2], g[3], g[4], g[5], values)
+
+
+_MIXED = np.array(
+    [[False] * 3, [False] * 3, [False] * 3, [True, True, False], [True, False, True],
+     [False, True, True]]
+)
+
+
+@compiled
+def raise_degree(g200, g020, g002, g110, g101, g011, values):
+    """The cubic Bernstein coefficients of a quadratic form."""
+    third = 1.0 / 3.0
+    values[0], values[1], values[2] = g200, g020, g002
+    values[3] = (g200 + 2.0 * g110) * third
+    values[4] = (g200 + 2.0 * g101) * third
+    values[5] = (g020 + 2.0 * g110) * third
+    values[6] = (g020 + 2.0 * g011) * third
+    values[7] = (g002 + 2.0 * g101) * third
+    values[8] = (g002 + 2.0 * g011) * third
+    values[9] = (g110 + g101 + g011) * third
+
+
+@compiled
+def sure_signs(values, bound, signs):
+    """Signs of coefficients, UNKNOWN within the bound."""
+    for c in range(10):
+        if values[c] > bound:
+            signs[c] = 1
+        elif values[c] < -bound:
+            signs[c] = -1
+        else:
+            signs[c] = UNKNOWN
+
+
+@compiled
+def surely_positive(t, s, si, sj, bound, far, known):
     """Whether Q_t sj L_s − Q_s si L_t > 0 in the interior of the triangle."""
     some = False
     for c in range(10):
         value = sj * coefficient(c, t, s) - si * coefficient(c, s, t)
         if value > bound:
             some = True
-        elif value < -bound or not is_structural_zero(c, t, s, si, sj, far, alike):
+        elif value < -bound or not is_structural_zero(c, t, s, si, sj, far, known):
             return False
     return some
 
 
 @compiled
-def cubic(t, s, si, sj, bound, far, alike, values, signs):
+def cubic(t, s, si, sj, bound, far, known, values, signs):
     """Coefficients and certain signs of Q_t sj L_s − Q_s si L_t."""
     for c in range(10):
         value = sj * coefficient(c, t, s) - si * coefficient(c, s, t)
@@ -203,7 +258,7 @@ def cubic(t, s, si, sj, bound, far, alike, values, signs):
             signs[c] = 1
         elif value < -bound:
             signs[c] = -1
-        elif is_structural_zero(c, t, s, si, sj, far, alike):
+        elif is_structural_zero(c, t, s, si, sj, far, known):
             signs[c] = 0
             value = 0.0
         else:
@@ -223,22 +278,8 @@ def collinear_quadratic(t, s, length_t, length_s, bound, values, signs):
     g110 = t[6] * length_s - s[6] * length_t
     g101 = t[7] * length_s - s[7] * length_t
     g011 = t[8] * length_s - s[8] * length_t
-    third = 1.0 / 3.0
-    values[0], values[1], values[2] = g200, g020, g002
-    values[3] = (g200 + 2.0 * g110) * third
-    values[4] = (g200 + 2.0 * g101) * third
-    values[5] = (g020 + 2.0 * g110) * third
-    values[6] = (g020 + 2.0 * g011) * third
-    values[7] = (g002 + 2.0 * g101) * third
-    values[8] = (g002 + 2.0 * g011) * third
-    values[9] = (g110 + g101 + g011) * third
-    for c in range(10):
-        if values[c] > bound:
-            signs[c] = 1
-        elif values[c] < -bound:
-            signs[c] = -1
-        else:
-            signs[c] = UNKNOWN
+    raise_degree(g200, g020, g002, g110, g101, g011, values)
+    sure_signs(values, bound, signs)
 
 
 @compiled

@@ -17,24 +17,25 @@ def new_work(n):
         np.empty((n, 9)),
         np.empty((n, 2)),
         (np.zeros(4, np.int64), np.zeros(n, np.int64), np.zeros(n, np.int64), np.zeros(n, np.int64)),
+        np.full(3, -1),
     )
 
 
 @compiled
-def sift(ids, m, corners, weights, far, segments, size, sense, definite, lines, lengths, classes, w):
+def sift(ids, m, corners, weights, far, segments, size, sense, definite, world, w):
     """Keep in ``ids`` (m,) the candidates that no pivot beats all over a triangle; their number."""
-    tables, norms, work = w
+    tables, norms, work, spots = w
     for a in range(m):
         root_table(segments[ids[a]], corners, weights, 0, 0, size, sense, tables[a], norms[a])
     kept, _ = prune(
-        tables, norms, ids, 0, m, error_factor(0), far, definite, work, lines, lengths, classes
+        tables, norms, ids, 0, m, error_factor(0), far, definite, work, world, spots
     )
     return kept
 
 
 @compiled
 def sift_regions(
-    regions, corners, weights, n, segments, size, sense, definite, lines, lengths, classes
+    regions, corners, weights, n, segments, size, sense, definite, world
 ):
     """Candidates of each region (triangles of corners), in CSR form; the last region is the whole."""
     first = np.zeros(len(regions) + 2, np.int64)
@@ -54,7 +55,7 @@ def sift_regions(
                 if ones[k] == 0.0:
                     far |= 1 << k
             kept = sift(
-                ids, n, three, ones, far, segments, size, sense, definite, lines, lengths, classes, w
+                ids, n, three, ones, far, segments, size, sense, definite, world, w
             )
         flat = grown(flat, first[r] + kept)
         flat[first[r] : first[r] + kept] = ids[:kept]
@@ -88,7 +89,7 @@ def _box(points, low, high, size, corners):
 
 
 @compiled
-def sift_kernel(chain, m, n, segments, size, sense, lines, lengths, classes):
+def sift_kernel(chain, m, n, segments, size, sense, world):
     """Candidates of the root triangles of a kernel, in the order of ``kernel_roots``, in CSR form.
 
     ``chain`` (2m + 1, 2): the points g_0, c_1, g_1, …, g_m = g_0 of its boundary.  Candidates of a
@@ -114,7 +115,7 @@ def sift_kernel(chain, m, n, segments, size, sense, lines, lengths, classes):
     kept = n
     for a in range(n):
         ids[a] = a
-    kept = _sift_box(ids, kept, box, three, ones, segments, size, sense, lines, lengths, classes, w)
+    kept = _sift_box(ids, kept, box, three, ones, segments, size, sense, world, w)
     flat = grown(flat, used + kept)
     flat[used : used + kept] = ids[:kept]
     first, count = used, kept
@@ -132,7 +133,7 @@ def sift_kernel(chain, m, n, segments, size, sense, lines, lengths, classes):
         _box(chain, 2 * low, 2 * high, size, box)
         ids[:count] = flat[first : first + count]
         kept = _sift_box(
-            ids, count, box, three, ones, segments, size, sense, lines, lengths, classes, w
+            ids, count, box, three, ones, segments, size, sense, world, w
         )
         flat = grown(flat, used + kept)
         flat[used : used + kept] = ids[:kept]
@@ -152,7 +153,7 @@ def sift_kernel(chain, m, n, segments, size, sense, lines, lengths, classes):
 
 
 @compiled
-def _sift_box(ids, m, box, three, ones, segments, size, sense, lines, lengths, classes, w):
+def _sift_box(ids, m, box, three, ones, segments, size, sense, world, w):
     """Keep the candidates that may win in a rectangle: in one of its two triangles."""
     if m <= 1:
         return m
@@ -160,10 +161,10 @@ def _sift_box(ids, m, box, three, ones, segments, size, sense, lines, lengths, c
     both[:] = ids[:m]
     three[0], three[1], three[2] = box[0], box[1], box[2]
     one = sift(
-        ids, m, three, ones, 0, segments, size, sense, True, lines, lengths, classes, w
+        ids, m, three, ones, 0, segments, size, sense, True, world, w
     )
     three[0], three[1], three[2] = box[0], box[2], box[3]
-    two = sift(both, m, three, ones, 0, segments, size, sense, True, lines, lengths, classes, w)
+    two = sift(both, m, three, ones, 0, segments, size, sense, True, world, w)
     merged = np.empty(one + two, np.int64)
     merged[:one] = ids[:one]
     merged[one:] = both[:two]

@@ -20,7 +20,13 @@ from harness.diagram.fast.classify import (
     is_blurred,
     new_scratch,
 )
-from harness.diagram.fast.forms import coefficient, error_factor, halve, surely_positive
+from harness.diagram.fast.forms import (
+    coefficient,
+    error_factor,
+    halve,
+    relation,
+    surely_positive,
+)
 from harness.diagram.fast.jit import compiled
 from harness.diagram.fast.leaves import EMPTY, FAILED, HARD
 from harness.diagram.fast.tables import root_table
@@ -29,7 +35,7 @@ LEAF = 3
 #: Corners are exact in doubles: at most this many halvings between a corner and the root's.
 FINEST = 50
 #: After so many halvings without losing a candidate a triangle is handed over as hard.
-PATIENCE = 24
+PATIENCE = 90
 
 
 @compiled
@@ -40,6 +46,33 @@ def grown(array, needed):
     bigger = np.empty((max(needed, 2 * len(array)), *array.shape[1:]), array.dtype)
     bigger[: len(array)] = array
     return bigger
+
+
+@compiled
+def localise(norms, start, m, lam):
+    """ML and MQ of all candidates on a triangle, columns 0 and 1, from those of the root, 2 and 3.
+
+    Column 4 holds the root's corners at which L is zero (3 bits) and at which Q is (3 bits).  At
+    a point λ only the other corners contribute to L, so |L| ≤ ML·Σ λ_k over these, and roundings
+    are as much smaller.  If Q is zero at just one corner, |q(λ, λ')| ≤ MQ·(Σ λ_k + Σ λ'_k) likewise.
+    """
+    share = np.ones(8)
+    for bits in range(1, 8):
+        most = 0.0
+        for p in range(3):
+            total = 0.0
+            for k in range(3):
+                if not bits >> k & 1:
+                    total += lam[3 * p + k]
+            most = max(most, total)
+        share[bits] = most
+    for a in range(start, start + m):
+        flags = int(norms[a, 4])
+        norms[a, 0] = norms[a, 2] * share[flags & 7]
+        ends = flags >> 3
+        norms[a, 1] = norms[a, 3]
+        if ends == 1 or ends == 2 or ends == 4:
+            norms[a, 1] *= min(1.0, 2.0 * share[ends])
 
 
 @compiled
@@ -75,25 +108,25 @@ def _form_sign(t, error):
 
 
 @compiled
-def beats(t, s, lt, ls, qt, qs, bound, far, alike):
+def beats(t, s, lt, ls, qt, qs, bound, far, known):
     """Whether the first candidate certainly wins against the second all over the triangle.
 
     ``lt``, ``ls``: signs of L (0: not constant).  ``qt``, ``qs``: signs of Q (0: not constant).
     """
     if lt != 0 and ls != 0:
-        return surely_positive(t, s, lt, ls, bound, far, alike)
+        return surely_positive(t, s, lt, ls, bound, far, known)
     if qt == 1 and qs == -1:
         return True
     if lt != 0:  # |L_s| is ±L_s: one sign suffices where Q_t ≥ 0, else take both
-        one = surely_positive(t, s, lt, 1.0, bound, far, alike)
+        one = surely_positive(t, s, lt, 1.0, bound, far, known)
         if qt == 1:
-            return one or surely_positive(t, s, lt, -1.0, bound, far, alike)
-        return one and surely_positive(t, s, lt, -1.0, bound, far, alike)
+            return one or surely_positive(t, s, lt, -1.0, bound, far, known)
+        return one and surely_positive(t, s, lt, -1.0, bound, far, known)
     if ls != 0:  # likewise for |L_t|, where Q_s ≤ 0
-        one = surely_positive(t, s, 1.0, ls, bound, far, alike)
+        one = surely_positive(t, s, 1.0, ls, bound, far, known)
         if qs == -1:
-            return one or surely_positive(t, s, -1.0, ls, bound, far, alike)
-        return one and surely_positive(t, s, -1.0, ls, bound, far, alike)
+            return one or surely_positive(t, s, -1.0, ls, bound, far, known)
+        return one and surely_positive(t, s, -1.0, ls, bound, far, known)
     return False
 
 
@@ -125,7 +158,7 @@ def _best_at(tables, start, m, corner):
 
 
 @compiled
-def prune(tables, norms, ids, start, m, factor, far, definite, work, lines, lengths, classes):
+def prune(tables, norms, ids, start, m, factor, far, definite, work, world, spots):
     """Drop candidates beaten by a pivot; the number left, moved to the front (stable)."""
     pivots, lsign, qsign, beaten = work
     count = 0
@@ -153,7 +186,7 @@ def prune(tables, norms, ids, start, m, factor, far, definite, work, lines, leng
                 continue
             tests += 1
             if _tested(
-                tables, norms, ids, start, p, a, lsign, qsign, factor, far, lines, lengths, classes
+                tables, norms, ids, start, p, a, lsign, qsign, factor, far, world, spots
             ):
                 beaten[a] = 1
                 break
@@ -169,14 +202,14 @@ def prune(tables, norms, ids, start, m, factor, far, definite, work, lines, leng
             kept += 1
     if 1 < kept <= 6:
         kept = _prune_pairs(
-            tables, norms, ids, start, kept, lsign, qsign, beaten, factor, far, lines, lengths,
-            classes,
+            tables, norms, ids, start, kept, lsign, qsign, beaten, factor, far, world, spots
         )
     return kept, tests
 
 
 @compiled
-def _tested(tables, norms, ids, start, p, a, lsign, qsign, factor, far, lines, lengths, classes):
+def _tested(tables, norms, ids, start, p, a, lsign, qsign, factor, far, world, spots):
+    lines, lengths, classes, tie_first, ties = world
     i, j = ids[start + p], ids[start + a]
     t, s = tables[start + p], tables[start + a]
     if lines[i] >= 0 and lines[i] == lines[j]:
@@ -185,20 +218,20 @@ def _tested(tables, norms, ids, start, p, a, lsign, qsign, factor, far, lines, l
     bound = factor * (
         norms[start + p, 1] * norms[start + a, 0] + norms[start + a, 1] * norms[start + p, 0]
     )
-    alike = classes[i] >= 0 and classes[i] == classes[j]
-    return beats(t, s, lsign[p], lsign[a], qsign[p], qsign[a], bound, far, alike)
+    known = relation(i, j, classes, tie_first, ties, spots)
+    return beats(t, s, lsign[p], lsign[a], qsign[p], qsign[a], bound, far, known)
 
 
 @compiled
 def _prune_pairs(
-    tables, norms, ids, start, m, lsign, qsign, beaten, factor, far, lines, lengths, classes
+    tables, norms, ids, start, m, lsign, qsign, beaten, factor, far, world, spots
 ):
     for a in range(m):
         beaten[a] = 0
     for a in range(m):
         for p in range(m):
             if p != a and not beaten[p] and _tested(
-                tables, norms, ids, start, p, a, lsign, qsign, factor, far, lines, lengths, classes
+                tables, norms, ids, start, p, a, lsign, qsign, factor, far, world, spots
             ):
                 beaten[a] = 1
                 break
@@ -254,8 +287,7 @@ def side_to_halve(tables, start, m, exponents, lsign):
 @compiled
 def subdivide(
     order, triangles, corners_dd, weights, incident_first, incident, candidate_first, candidate_count,
-    candidates,
-    segments, size, sense, definite, lines, lengths, classes, most,
+    candidates, segments, size, sense, definite, world, most,
 ):
     """Subdivide the root triangles numbered in ``order``.
 
@@ -263,8 +295,9 @@ def subdivide(
     :func:`harness.diagram.fast.tables.root_table`.  ``incident`` (CSR): the segments whose line
     passes through a corner; 2·segment + 1 if the corner is its endpoint, else 2·segment.
     ``candidates``: segments to consider in each root, from ``candidate_first`` on.  ``definite``: every L is ≥ 0 on the
-    whole domain.  ``lines``, ``classes``: number of the common line, of the common vector up to
-    sign, or −1.  ``most``: triangles allowed.
+    whole domain.  ``world``: (lines, lengths, classes) of :class:`harness.diagram.fast.prepare.Prepared`, and the
+    known ties (first row of each corner, rows; see :func:`harness.diagram.fast.forms.relation`).
+    ``most``: triangles allowed in a root.
 
     Returns (tokens, leaf kinds, choices, first slot of each leaf, slots: place and owner, λ of
     the corners of the leaves that are not empty, a point in each, root of each, first candidate
@@ -274,7 +307,7 @@ def subdivide(
     for r in order:
         widest = max(widest, candidate_count[r])
     tables = np.empty((4 * widest + 64, 9))
-    norms = np.empty((4 * widest + 64, 2))
+    norms = np.empty((4 * widest + 64, 5))
     ids = np.empty(4 * widest + 64, np.int64)
     frames = np.zeros((256, 5), np.int64)  # start, count, depth, patience, far
     corners = np.zeros((256, 9))
@@ -299,6 +332,8 @@ def subdivide(
     )
     sides = np.ones(4)
     statistics = np.zeros(4, np.int64)
+    spots = np.empty(3, np.int64)
+    lines, lengths, classes, tie_first, ties = world
     root_corners = np.empty((3, 4))
     root_weights = np.empty(3)
     for root in order:
@@ -322,13 +357,15 @@ def subdivide(
                             ends |= 1 << k
             root_table(
                 segments[ids[a]], root_corners, root_weights, zeros, ends, size, sense, tables[a],
-                norms[a],
+                norms[a, 2:4],
             )
+            norms[a, 4] = zeros + 8 * ends
         frames[0, 0], frames[0, 1], frames[0, 2], frames[0, 3], frames[0, 4] = 0, m, 0, 0, far
         exponents[0] = 0
         corners[0] = 0.0
         for k in range(3):
             corners[0, 4 * k] = 1.0
+        before = statistics[0]
         top = 1
         while top > 0:
             top -= 1
@@ -336,8 +373,16 @@ def subdivide(
             e = exponents[top].copy()
             lam = corners[top].copy()
             factor = error_factor(depth)
+            for k in range(3):
+                spots[k] = -1
+                if e[k] == 0:
+                    for c in range(3):
+                        corner = triangles[root, c]
+                        if lam[3 * k + c] == 1.0 and tie_first[corner] < tie_first[corner + 1]:
+                            spots[k] = corner
+            localise(norms, start, m, lam)
             kept, tests = prune(
-                tables, norms, ids, start, m, factor, far, definite, work, lines, lengths, classes
+                tables, norms, ids, start, m, factor, far, definite, work, world, spots
             )
             statistics[0] += 1
             statistics[1] += tests
@@ -359,8 +404,7 @@ def subdivide(
                 )
                 if not mixed or same_line:
                     all_pairs(
-                        tables, start, m, sides, norms, start, factor, far, classes, lines, lengths,
-                        ids, scratch,
+                        tables, start, m, sides, norms, factor, far, world, spots, ids, scratch
                     )
                     kind, ports, choice = classify_definite(m, scratch)
                     if kind == FAILED and is_blurred(m, scratch):
@@ -370,16 +414,16 @@ def subdivide(
                     bound = factor * (
                         norms[start, 1] * norms[start + 1, 0] + norms[start + 1, 1] * norms[start, 0]
                     )
-                    alike = classes[i] >= 0 and classes[i] == classes[j]
+                    known = relation(i, j, classes, tie_first, ties, spots)
                     kind, ports, choice = classify_mixed(
                         tables[start], tables[start + 1], lsign[0], lsign[1], qsign[0], bound, far,
-                        alike, scratch,
+                        known, scratch,
                     )
             k = side_to_halve(tables, start, m, e, lsign) if kind == FAILED else 0
             if kind == FAILED:
                 q, r = (k + 1) % 3, (k + 2) % 3
                 finer = max(e[q], e[r]) + 1
-                if finer > FINEST or (patience > PATIENCE and m <= 12) or statistics[0] > most:
+                if finer > FINEST or (patience > PATIENCE and m <= 12) or statistics[0] - before > most:
                     kind = HARD
             tokens = grown(tokens, n_tokens + 1)
             if kind == FAILED:
