@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from harness.diagram.fast.forms import error_factor, halve
+from harness.diagram.fast.subdivide import localise
 from harness.diagram.fast.tables import root_table
 
 Point = tuple[Fraction, Fraction]
@@ -159,20 +160,25 @@ class Scene:
 
 @dataclass
 class Descent:
-    """A scene after some halvings: tables in doubles, corners exactly."""
+    """A scene after some halvings: tables in doubles, corners exactly.
+
+    ``norms``: ML and MQ of both segments over the root.  ``weights``: the corners in terms of those
+    of the root.
+    """
 
     scene: Scene
     tables: list[Floats]
     norms: list[Floats]
     corners: Sequence[Corner]
     far: int
+    weights: Floats
     depth: int = 0
 
     @classmethod
     def into(cls, scene: Scene, steps: Iterable[tuple[int, int]]) -> Descent:
         """Halve at each step (corner opposite to the side, which half)."""
         tables, norms = scene.tables()
-        here = cls(scene, tables, norms, scene.corners, scene.far)
+        here = cls(scene, tables, norms, scene.corners, scene.far, np.eye(3))
         for k, half in steps:
             here._halve(k, half)
         return here
@@ -184,6 +190,9 @@ class Descent:
             self.tables[number] = both[half]
         self.corners = halved(self.corners, k)[half]
         self.far = sum(1 << c for c, corner in enumerate(self.corners) if corner[2] == 0)
+        p, q, r = (self.weights[(k + turn) % 3] for turn in range(3))
+        middle = 0.5 * (q + r)
+        self.weights = np.array([p, q, middle] if half == 0 else [p, middle, r])
         self.depth += 1
 
     def exact(self) -> tuple[list[Fraction], list[Fraction]]:
@@ -191,10 +200,20 @@ class Descent:
         sense = self.scene.sense
         return exact_table(one, self.corners, sense), exact_table(two, self.corners, sense)
 
+    def local_norms(self) -> Floats:
+        """ML and MQ of both segments over this triangle, (2, 2)."""
+        rows = np.zeros((2, 5))
+        for row, norm, zeros, ends in zip(
+            rows, self.norms, self.scene.zeros, self.scene.ends, strict=True
+        ):
+            row[2:4], row[4] = norm, zeros + 8 * ends
+        localise(rows, 0, 2, self.weights.ravel())
+        return rows[:, :2]
+
     @property
     def bound(self) -> float:
         """As in the subdivision."""
-        (lt, qt), (ls, qs) = self.norms
+        (lt, qt), (ls, qs) = self.local_norms().tolist()
         return float(error_factor(self.depth) * (qt * ls + qs * lt))
 
 

@@ -5,6 +5,7 @@ The theorem is in the docstring of :mod:`harness.diagram.fast.forms`.
 
 from __future__ import annotations
 
+import itertools
 import math
 import random
 from collections.abc import Iterator
@@ -21,8 +22,8 @@ from harness.diagram.fast.forms import (
     U,
     collinear_quadratic,
     cubic,
+    divided_by_distance,
     gradient_controls,
-    product,
     surely_positive,
     value_and_gradient,
 )
@@ -36,7 +37,6 @@ from tests.diagram.fast.exact_forms import (
     double_double,
     exact_collinear,
     exact_cubic,
-    exact_product,
     sign,
 )
 from tests.diagram.fast.scenes import STANDARD, fine, moved, rounded, scenes, steps
@@ -51,7 +51,7 @@ def coefficients(here: Descent, si: int, sj: int) -> tuple[np.ndarray, np.ndarra
     (a, b), (c, d) = here.scene.segments
     one, two = (b[0] - a[0], b[1] - a[1]), (d[0] - c[0], d[1] - c[1])
     alike = two in (one, (-one[0], -one[1]))
-    cubic(t, s, si, sj, here.bound, here.far, alike, values, signs)
+    cubic(t, s, si, sj, here.bound, here.far, int(alike), values, signs)
     return values, signs
 
 
@@ -84,7 +84,7 @@ def test_entries_of_tables_are_within_their_bounds(
 ) -> None:
     """Roots are off by 5u·ML and 6u·MQ; each halving adds u·ML, and 2u·MQ where a side is cut."""
     here = Descent.into(scene, path)
-    for table, norm, exact in zip(here.tables, here.norms, here.exact(), strict=True):
+    for table, norm, exact in zip(here.tables, here.local_norms(), here.exact(), strict=True):
         for k, (value, truth) in enumerate(zip(table.tolist(), exact, strict=True)):
             if k < 3:
                 allowed = (5 + here.depth) * U * norm[0]
@@ -127,7 +127,7 @@ def test_signs_are_never_wrong(scene: Scene, path: list[tuple[int, int]], si: in
     for value, claimed, true in zip(values.tolist(), signs.tolist(), truth, strict=True):
         assert claimed in (true, UNKNOWN)
         assert claimed != 0 or value == 0.0
-    claim = surely_positive(*here.tables, si, sj, here.bound, here.far, False)
+    claim = surely_positive(*here.tables, si, sj, here.bound, here.far, 0)
     assert not claim or (min(truth) >= 0 and max(truth) > 0)
 
 
@@ -157,7 +157,7 @@ def test_collinear_segments(scene: Scene, path: list[tuple[int, int]], at: int, 
         for segment in scene.segments
     )
     values, signs = np.empty(10), np.empty(10, np.int64)
-    norms = here.norms
+    norms = here.local_norms()
     bound = here.bound / (norms[0][1] * norms[1][0] + norms[1][1] * norms[0][0])
     bound *= norms[0][1] * other + norms[1][1] * length
     collinear_quadratic(*here.tables, length, other, bound, values, signs)
@@ -165,6 +165,33 @@ def test_collinear_segments(scene: Scene, path: list[tuple[int, int]], at: int, 
     for value, claimed, exact in zip(values.tolist(), signs.tolist(), truth, strict=True):
         assert claimed in (sign(exact), UNKNOWN)
         assert abs(Fraction(value) / Fraction(other) - exact) <= Fraction(bound) / Fraction(other)
+
+
+@settings(max_examples=200)
+@given(scenes(), st.tuples(*[st.integers(-9, 9)] * 2), st.integers(0, 2), st.booleans())
+def test_equal_vectors_divided_by_the_distance(
+    scene: Scene, shift: tuple[int, int], k: int, turned: bool
+) -> None:
+    """Over a triangle with two corners at infinity F = λ_k·G: its quadratic factor, raised."""
+    a, b = scene.segments[0]
+    c, d = ((x + dx, y + dy) for (x, y), (dx, dy) in ((a, shift), (b, shift)))
+    near = (Fraction(1, 3), Fraction(1, 5), Fraction(1))
+    east, north = (Fraction(5), Fraction(1), Fraction(0)), (Fraction(-2), Fraction(3), Fraction(0))
+    corners = [near, east, north]
+    rolled = tuple(corners[-k:] + corners[:-k])
+    segments = ((a, b), (d, c) if turned else (c, d))
+    here = Descent.into(Scene(segments, rolled, sense=scene.sense).scaled(), [])
+    sj = -1 if turned else 1
+    values, _ = coefficients(here, 1, sj)
+    divided_by_distance(values, np.zeros(10, np.int64), k)
+    exact = exact_cubic(*here.exact(), 1, sj)
+    assert all(exact[c] == 0 for c, index in enumerate(CUBIC) if index[k] == 0)
+    for point in itertools.product([Fraction(1, 4), Fraction(1), Fraction(3)], repeat=3):
+        found = bernstein([Fraction(value) for value in values.tolist()], CUBIC, point)
+        total, weight = sum(point), sum(point) ** 3
+        # Homogeneous of degree 3 after raising: multiply the true G by λ₀ + λ₁ + λ₂.
+        truth = bernstein(exact, CUBIC, point) / point[k] * total
+        assert abs(found - truth) <= 9 * Fraction(here.bound) * weight
 
 
 @given(scenes(), steps(8), st.tuples(st.integers(1, 9), st.integers(1, 9), st.integers(1, 9)))
@@ -189,17 +216,6 @@ def test_value_and_gradient_are_those_of_the_coefficients(
         for axis in (1, 2):
             expected = derivative(exact, axis, at)
             assert abs(Fraction(controls[corner, axis - 1]) - expected) <= 12 * Fraction(U) * size
-
-
-@given(scenes(), steps(8))
-def test_a_product_is_a_product(scene: Scene, path: list[tuple[int, int]]) -> None:
-    t, s = Descent.into(scene, path).tables
-    out = np.empty(10)
-    product(t, s, out)
-    one, two = ([Fraction(value) for value in table.tolist()] for table in (t, s))
-    size = Fraction(float(np.abs(t[3:]).max() * np.abs(s[:3]).max()))
-    for found, expected in zip(out.tolist(), exact_product(one[3:], two[:3]), strict=True):
-        assert abs(Fraction(found) - expected) <= 8 * Fraction(U) * size
 
 
 # --- a search for large errors -------------------------------------------------------------------
