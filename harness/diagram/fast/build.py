@@ -81,10 +81,12 @@ def find_leaves(
     coordinates, weights, incident_first, incident = roots.corners.arrays(prepared.scale)
     first, count, flat = candidates
 
+    special = np.array(roots.corners.special)
+
     def run(order: Ints) -> Any:
         return subdivide(
-            order, roots.triangles, coordinates, weights, incident_first, incident, first, count,
-            flat, prepared.segments, prepared.size, sense, definite, world, MOST_TRIANGLES,
+            order, roots.triangles, coordinates, weights, special, incident_first, incident, first,
+            count, flat, prepared.segments, prepared.size, sense, definite, world, MOST_TRIANGLES,
         )
 
     batches = list(_batches(len(roots.triangles), count))

@@ -275,12 +275,36 @@ def _corners_are_plain(m, w):
 
 
 @compiled
+def _keeps_its_sign(signs):
+    """Whether a cubic certainly has no zero inside the triangle."""
+    positive = negative = False
+    for c in range(10):
+        if signs[c] == UNKNOWN:
+            return False
+        positive = positive or signs[c] == 1
+        negative = negative or signs[c] == -1
+    return positive != negative
+
+
+@compiled
 def _all_cones(m, w):
     for a in range(m):
         for b in range(a + 1, m):
-            if not has_cone(w[0][a, b], w[2][a, b], w[3][a, b]):
+            cone = has_cone(w[0][a, b], w[2][a, b], w[3][a, b])
+            if not cone and not _keeps_its_sign(w[1][a, b]):
                 return False
     return True
+
+
+@compiled
+def _is_simple(signs, values, bound, controls):
+    """Whether the zero set of a cubic is known to be one arc for every two ports, and no loop."""
+    if has_cone(values, bound, controls) or _keeps_its_sign(signs):
+        return True
+    for corner in range(3):
+        if is_radial(signs, corner):
+            return True
+    return False
 
 
 @compiled
@@ -303,6 +327,25 @@ def is_blurred(m, w):
                 largest = max(largest, abs(w[0][a, b, c]))
             if largest <= 32.0 * w[2][a, b]:
                 return True
+    return False
+
+
+@compiled
+def may_tie_at_corner(m, w, exponents, lam, corners, special):
+    """Whether some F may be zero at a special corner without our knowing.
+
+    Halving would not end: whether it is so must be found out otherwise.  ``exponents``: 0 at the
+    triangle's corners that are corners of the root, which has the numbers ``corners``.
+    """
+    for k in range(3):
+        if exponents[k] != 0:
+            continue
+        for c in range(3):
+            if lam[3 * k + c] == 1.0 and special[corners[c]]:
+                for a in range(m):
+                    for b in range(a + 1, m):
+                        if w[1][a, b, k] == UNKNOWN:
+                            return True
     return False
 
 
@@ -509,12 +552,8 @@ def classify_mixed(t, s, la, lb, q, bound, far, known, w):
     cubic(t, s, -1.0, 1.0, bound, far, known, values[1, 0], signs[1, 0])
     for f in range(2):
         a, b = f, 1 - f
-        if not has_cone(values[a, b], bound, controls[a, b]):
-            radial = False
-            for corner in range(3):
-                radial = radial or is_radial(signs[a, b], corner)
-            if not radial:
-                return FAILED, 0, 0
+        if not _is_simple(signs[a, b], values[a, b], bound, controls[a, b]):
+            return FAILED, 0, 0
     count = 0
     last_plus = germ(signs[0, 1], 1, True)
     last_minus = germ(signs[1, 0], 1, True)

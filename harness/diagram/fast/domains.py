@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable
 from fractions import Fraction
+from functools import cmp_to_key
+from itertools import pairwise
 
 import numpy as np
 
@@ -128,7 +130,7 @@ def _kernel_with_flat_points(
         row = {edge: 2 * edge for edge in (lines[k - 1], lines[k])}
         row |= {edge: 2 * edge + 1 for edge in touching[point]}
         incident.append(sorted(row.values()))
-    return fan(points, incident, wall, free_point(kernel.corners, seed)), []
+    return fan(points, incident, wall, free_point(kernel.corners, seed), seed), []
 
 
 def segments_at(
@@ -161,15 +163,27 @@ def fan(
     incident: list[list[int]],
     wall: list[int],
     centre: RationalPoint,
+    seed: int,
 ) -> Roots:
     """The triangles from a point to the sides of a polygon that is star-shaped about it."""
     corners, n = Corners(), len(points)
     for point, row in zip(points, incident, strict=True):
         corners.add(point, row, special=True)
     middle = corners.add(centre)
-    triangles = [(middle, k, (k + 1) % n) for k in range(n)]
-    walls = {(k, (k + 1) % n): wall[k] for k in range(n)}
+    triangles, walls = [], {}
+    for k in range(n):
+        following = (k + 1) % n
+        free = _free_wall_point(corners, k, following, k, seed)
+        triangles += [(middle, k, free), (middle, free, following)]
+        walls[k, free] = walls[free, following] = wall[k]
     return _roots(corners, triangles, walls)
+
+
+def _free_wall_point(corners: Corners, a: int, b: int, number: int, seed: int) -> int:
+    """A free point between two corners on the boundary, on the lines that both are on."""
+    lines = {z >> 1 for z in corners.incident[a]} & {z >> 1 for z in corners.incident[b]}
+    point = between(corners.exact[a], corners.exact[b], free_number(number, seed))
+    return corners.add(point, [2 * k for k in sorted(lines)])
 
 
 def interior_roots(instance: Instance, kernel: Kernel, seed: int) -> Roots:
@@ -181,7 +195,7 @@ def interior_roots(instance: Instance, kernel: Kernel, seed: int) -> Roots:
     incident = [[2 * edge + 1 for edge in touching[point]] for point in points]
     wall = list(range(n))
     if kernel.has_interior:
-        return fan(points, incident, wall, free_point(kernel.corners, seed))
+        return fan(points, incident, wall, free_point(kernel.corners, seed), seed)
     return refined(points, incident, clipped_ears(points), {(k, (k + 1) % n): k for k in wall}, seed)
 
 
@@ -240,11 +254,18 @@ def refined(
             across[frozenset((corner[k], corner[(k + 1) % 3]))].append(t)
     bend: dict[frozenset[int], int] = {}
     result, region_of = [], []
+    pieces: dict[tuple[int, int], int] = {}
     for t, corner in enumerate(triangles):
         for k in range(3):
             a, b = corner[k], corner[(k + 1) % 3]
             side = frozenset((a, b))
-            if (a, b) in walls or len(across[side]) == 1 or not (incident[a] and incident[b]):
+            if (a, b) in walls:
+                free = _free_wall_point(corners, a, b, a, seed)
+                result += [(middles[t], a, free), (middles[t], free, b)]
+                pieces[a, free] = pieces[free, b] = walls[a, b]
+                region_of += [t, t]
+                continue
+            if len(across[side]) == 1 or not (incident[a] and incident[b]):
                 result.append((middles[t], a, b))
                 region_of.append(t)
                 continue
@@ -254,7 +275,7 @@ def refined(
             # The free point beside the side may lie outside this triangle.
             region_of += [-1 if across[side][0] != t else t] * 2
     regions = np.array(triangles, dtype=np.int64)
-    return Roots(corners, np.array(result, dtype=np.int64), walls, regions, np.array(region_of))
+    return Roots(corners, np.array(result, dtype=np.int64), pieces, regions, np.array(region_of))
 
 
 def _strictly_in(p: RationalPoint, a: RationalPoint, b: RationalPoint, c: RationalPoint) -> bool:
@@ -321,17 +342,29 @@ def plane_roots(instance: Instance, seed: int) -> Roots:
         triangles.append((a, b, c) if turn_sign > 0 else (a, c, b))
     inner = refined(points, incident, triangles, {}, seed)
     n = len(points)
-    far = [
-        inner.corners.add(
-            (Fraction(float(p[0]) - float(centre[0])), Fraction(float(p[1]) - float(centre[1]))),
-            weight=0.0,
-        )
+    directions = [
+        ((Fraction(float(p[0]) - float(centre[0])), Fraction(float(p[1]) - float(centre[1]))), [])
         for p in corners_far
     ]
     outer = []
+    marked = parallel_directions(instance)
+    ends = [inner.corners.add(d, weight=0.0) for d, _ in directions]
     for k in range(3):
-        a, b, da, db = n - 3 + k, n - 3 + (k + 1) % 3, far[k], far[(k + 1) % 3]
-        outer += [(b, a, da), (b, da, db)]
+        a, b = n - 3 + k, n - 3 + (k + 1) % 3
+        (low, _), (high, _) = directions[k], directions[(k + 1) % 3]
+        between_them = [
+            (d, row) for d, row in marked if turns_left(low, d) and turns_left(d, high)
+        ]
+        between_them.sort(key=cmp_to_key(lambda x, y: -1 if turns_left(x[0], y[0]) else 1))
+        chain = [ends[k]]
+        for direction, row in between_them:
+            if inner.corners.special[chain[-1]]:
+                last = inner.corners.exact[chain[-1]]
+                chain.append(inner.corners.add(_free_direction(last, direction, seed), weight=0.0))
+            chain.append(inner.corners.add(direction, row, weight=0.0, special=True))
+        chain.append(ends[(k + 1) % 3])
+        outer.append((b, a, chain[0]))
+        outer += [(b, d, e) for d, e in pairwise(chain)]
     return Roots(
         inner.corners,
         np.concatenate([inner.triangles, outer]),
@@ -339,3 +372,39 @@ def plane_roots(instance: Instance, seed: int) -> Roots:
         inner.regions,
         np.concatenate([inner.region_of, np.full(len(outer), -1)]),
     )
+
+
+def turns_left(d: RationalPoint, e: RationalPoint) -> bool:
+    """Whether direction e lies less than half a turn to the left of direction d."""
+    return d[0] * e[1] - d[1] * e[0] > 0
+
+
+def parallel_directions(instance: Instance) -> list[tuple[RationalPoint, list[int]]]:
+    """Both directions of every family of parallel segments, with 2·segment for its members.
+
+    There the lines of all members meet, at infinity.
+    """
+    families: defaultdict[Fraction | None, list[int]] = defaultdict(list)
+    vectors = []
+    for k, (a, b) in enumerate(instance.rational_segments()):
+        dx, dy = b[0] - a[0], b[1] - a[1]
+        vectors.append((dx, dy))
+        families[dy / dx if dx else None].append(k)
+    result = []
+    for members in families.values():
+        if len(members) > 1:
+            dx, dy = vectors[members[0]]
+            row = [2 * k for k in members]
+            result += [((dx, dy), row), ((-dx, -dy), row)]
+    return result
+
+
+def _free_direction(d: RationalPoint, e: RationalPoint, seed: int) -> RationalPoint:
+    """A free direction between two, in doubles."""
+    (dx, dy), (ex, ey) = ((float(v[0]), float(v[1])) for v in (d, e))
+    t = float(free_number(5, seed)) / np.hypot(ex, ey)
+    s = float(1 - free_number(5, seed)) / np.hypot(dx, dy)
+    free = (Fraction(float(s * dx + t * ex)), Fraction(float(s * dy + t * ey)))
+    if not (turns_left(d, free) and turns_left(free, e)):
+        raise Contradiction("no room for a free direction")
+    return free

@@ -66,7 +66,7 @@ class Corners:
     def arrays(self, scale: Fraction) -> tuple[Floats, Floats, Ints, Ints]:
         """Coordinates (c, 4) times ``scale``, weights (c,), and the incident segments in CSR form.
 
-        The coordinates of corners at infinity must be doubles.
+        Of corners at infinity only the high parts are used; free ones must be doubles.
         """
         coordinates = np.array(
             [[*double_double(x * scale), *double_double(y * scale)] for x, y in self.exact],

@@ -18,6 +18,7 @@ from harness.diagram.fast.classify import (
     classify_definite,
     classify_mixed,
     is_blurred,
+    may_tie_at_corner,
     new_scratch,
 )
 from harness.diagram.fast.forms import (
@@ -248,35 +249,71 @@ def _prune_pairs(
     return kept
 
 
+#: Neighbouring coefficients, and the corner opposite to the side along which they are.
+_STEPS_ALONG = np.array(
+    [[1, 6, 0], [6, 8, 0], [8, 2, 0], [3, 4, 0], [5, 9, 0], [9, 7, 0]]
+    + [[2, 7, 1], [7, 4, 1], [4, 0, 1], [8, 9, 1], [9, 3, 1], [6, 5, 1]]
+    + [[0, 3, 2], [3, 5, 2], [5, 1, 2], [4, 9, 2], [9, 6, 2], [7, 8, 2]]
+)
+
+
 @compiled
-def side_to_halve(tables, start, m, exponents, lsign):
+def _turns(c, k, tiny):
+    """Whether a cubic that vanishes at corner k changes sign with the direction from there."""
+    if k == 0:
+        one, two, near, middle, far = c[3], c[4], c[5], c[9], c[7]
+    elif k == 1:
+        one, two, near, middle, far = c[6], c[5], c[8], c[9], c[3]
+    else:
+        one, two, near, middle, far = c[7], c[8], c[4], c[9], c[6]
+    if abs(one) > tiny or abs(two) > tiny:
+        return one * two < 0.0
+    return near * middle < 0.0 or middle * far < 0.0 or near * far < 0.0
+
+
+@compiled
+def side_to_halve(tables, start, m, depth, lsign):
     """The corner opposite to the side along which the contest varies most.
 
     The variation of F between the first candidate and some others, along each side, relative to
-    its size; a side that has been halved much more often than the others waits.
+    its size.
     """
     variation = np.zeros(3)
+    zeros, turning = np.zeros(3, np.int64), np.zeros(3, np.int64)
+    along = np.zeros(3)
+    pairs = 0
     t = tables[start]
+    c = np.empty(10)
     for a in range(1, min(m, 6)):
         s = tables[start + a]
-        st = -1.0 if lsign[0] < 0 else 1.0
-        ss = -1.0 if lsign[a] < 0 else 1.0
-        c = np.empty(10)
-        size = 0.0
-        for r in range(10):
-            c[r] = ss * coefficient(r, t, s) - st * coefficient(r, s, t)
-            size = max(size, abs(c[r]))
-        if size == 0.0:
-            continue
-        along0 = max(abs(c[1] - c[6]), abs(c[6] - c[8]), abs(c[8] - c[2]), abs(c[3] - c[4]),
-                     abs(c[5] - c[9]), abs(c[9] - c[7]))
-        along1 = max(abs(c[2] - c[7]), abs(c[7] - c[4]), abs(c[4] - c[0]), abs(c[8] - c[9]),
-                     abs(c[9] - c[3]), abs(c[6] - c[5]))
-        along2 = max(abs(c[0] - c[3]), abs(c[3] - c[5]), abs(c[5] - c[1]), abs(c[4] - c[9]),
-                     abs(c[9] - c[6]), abs(c[7] - c[8]))
-        variation[0] += along0 / size
-        variation[1] += along1 / size
-        variation[2] += along2 / size
+        both = lsign[0] == 0 or lsign[a] == 0
+        for sign in range(2 if both else 1):
+            st = -1.0 if lsign[0] < 0 else 1.0
+            ss = -1.0 if (lsign[a] < 0) != (sign == 1) else 1.0
+            size = 0.0
+            for r in range(10):
+                c[r] = ss * coefficient(r, t, s) - st * coefficient(r, s, t)
+                size = max(size, abs(c[r]))
+            if size == 0.0:
+                continue
+            pairs += 1
+            for r in range(3):
+                if abs(c[r]) <= 1e-13 * size:
+                    zeros[r] += 1
+                    turning[r] += _turns(c, r, 1e-13 * size)
+            for r in range(18):
+                k = _STEPS_ALONG[r, 2]
+                step = abs(c[_STEPS_ALONG[r, 0]] - c[_STEPS_ALONG[r, 1]]) / size
+                along[k] = max(along[k], step)
+            for k in range(3):
+                variation[k] += along[k]
+                along[k] = 0.0
+    # Where all tie at a corner and some F changes sign with the direction, its far side is halved
+    # every second time: cutting across would repeat the same picture, smaller and smaller.
+    if depth & 1:
+        for k in range(3):
+            if pairs > 0 and zeros[k] == pairs and turning[k] > 0:
+                return k
     best = 0
     for k in range(1, 3):
         if variation[k] > variation[best]:
@@ -286,13 +323,13 @@ def side_to_halve(tables, start, m, exponents, lsign):
 
 @compiled
 def subdivide(
-    order, triangles, corners_dd, weights, incident_first, incident, candidate_first, candidate_count,
+    order, triangles, corners_dd, weights, special, incident_first, incident, candidate_first, candidate_count,
     candidates, segments, size, sense, definite, world, most,
 ):
     """Subdivide the root triangles numbered in ``order``.
 
     ``triangles`` (r, 3): corners, counter-clockwise.  ``corners_dd`` (c, 4), ``weights`` (c,): see
-    :func:`harness.diagram.fast.tables.root_table`.  ``incident`` (CSR): the segments whose line
+    :func:`harness.diagram.fast.tables.root_table`.  ``special`` (c,): whether a corner is.  ``incident`` (CSR): the segments whose line
     passes through a corner; 2·segment + 1 if the corner is its endpoint, else 2·segment.
     ``candidates``: segments to consider in each root, from ``candidate_first`` on.  ``definite``: every L is ≥ 0 on the
     whole domain.  ``world``: (lines, lengths, classes) of :class:`harness.diagram.fast.prepare.Prepared`, and the
@@ -407,7 +444,10 @@ def subdivide(
                         tables, start, m, sides, norms, factor, far, world, spots, ids, scratch
                     )
                     kind, ports, choice = classify_definite(m, scratch)
-                    if kind == FAILED and is_blurred(m, scratch):
+                    if kind == FAILED and (
+                        is_blurred(m, scratch)
+                        or may_tie_at_corner(m, scratch, e, lam, triangles[root], special)
+                    ):
                         kind = HARD
                 elif m == 2 and qsign[0] != 0 and qsign[0] == qsign[1]:
                     i, j = ids[start], ids[start + 1]
@@ -419,7 +459,7 @@ def subdivide(
                         tables[start], tables[start + 1], lsign[0], lsign[1], qsign[0], bound, far,
                         known, scratch,
                     )
-            k = side_to_halve(tables, start, m, e, lsign) if kind == FAILED else 0
+            k = side_to_halve(tables, start, m, depth, lsign) if kind == FAILED else 0
             if kind == FAILED:
                 q, r = (k + 1) % 3, (k + 2) % 3
                 finer = max(e[q], e[r]) + 1
