@@ -12,8 +12,11 @@ if TYPE_CHECKING:
     from harness.geometry.coordinates import Point
     from harness.geometry.instance import Instance
 
-BUILDERS = ("reference",)
+BUILDERS = ("fast", "reference")
 """The names of the builders; the first is the default."""
+
+MOST_HANDED_OVER = 32
+"""An instance with at most so many segments goes to the reference builder if the fast one fails."""
 
 
 def build(
@@ -21,21 +24,57 @@ def build(
     domain: Domain | None = None,
     objective: Objective = "smallest",
     builder: str = BUILDERS[0],
+    workers: int | None = None,
 ) -> PlanarMap:
     """The angular Voronoi diagram of a validated instance.
 
-    ``domain`` defaults to ``kernel`` for a polygon and ``plane`` for segments.
+    ``domain`` defaults to ``kernel`` for a polygon and ``plane`` for segments.  ``workers``: threads
+    of the fast builder, by default one per processor; the map does not depend on it.
 
     Raises:
-        UserError: an unknown builder; a domain that does not go with the kind of instance; a
+        UserError: an unknown builder; an instance so degenerate that the fast builder cannot
+            certify it, and too large to be handed to the reference builder instead; a domain that does not go with the kind of instance; a
             polygon that is not star-shaped, or whose kernel has no interior, in domain ``kernel``.
     """
-    from harness.diagram.reference import build_reference
-
     if builder not in BUILDERS:
         raise UserError(f"unknown builder {builder!r}: choose from {', '.join(BUILDERS)}")
     domain = domain or ("kernel" if instance.kind == "polygon" else "plane")
-    return build_reference(instance, domain, objective, domain_corners(instance, domain))
+    corners = domain_corners(instance, domain)
+    if builder == "fast":
+        return _fast_or_reference(instance, domain, objective, corners, workers)
+    from harness.diagram.reference import build_reference
+
+    return build_reference(instance, domain, objective, corners)
+
+
+def _fast_or_reference(
+    instance: Instance,
+    domain: Domain,
+    objective: Objective,
+    corners: list[Point],
+    workers: int | None,
+) -> PlanarMap:
+    """The fast builder's map; of a small instance that it cannot certify, the reference's.
+
+    Both are exact, so the name of the builder only says who was asked.
+    """
+    from dataclasses import replace
+
+    from harness.diagram.fast.map import build_fast
+    from harness.diagram.work import Contradiction, Work
+
+    try:
+        return build_fast(instance, domain, objective, corners, workers)
+    except Contradiction as problem:
+        if instance.n > MOST_HANDED_OVER:
+            raise UserError(
+                f"{instance.label}: the fast builder cannot certify this instance ({problem}), and "
+                f"{instance.n} segments are too many for the reference builder"
+            ) from problem
+    from harness.diagram.reference import build_reference
+
+    exact = build_reference(instance, domain, objective, corners)
+    return replace(exact, builder="fast", work=Work(0, 0, 1, 0, 0, 1, 1))
 
 
 def domain_corners(instance: Instance, domain: Domain) -> list[Point]:

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from scipy.cluster.hierarchy import DisjointSet
 
 from harness.diagram.counts import Counts, Domain, NodeKind, Objective
+from harness.diagram.work import Work
 from harness.geometry import coordinates
 from harness.geometry.instance import Instance
 
@@ -154,7 +155,8 @@ class PlanarMap:
     ``corners``: the counter-clockwise corners of the domain as doubles, (k, 2), or None for the
     plane.  ``witnesses``: exact points with the index of the cell they lie in (−1: outside), at
     least one for every cell.  ``locator`` finds the cell of an exact point: its index, −1 outside
-    the domain, None on an edge or node.
+    the domain, None on an edge or node.  ``tally``: the counts, from a builder that has them without
+    looking at the objects.  ``work``: what the builder did, if it keeps account.
     """
 
     instance: Instance
@@ -162,17 +164,23 @@ class PlanarMap:
     objective: Objective
     builder: str
     certified: bool
-    nodes: tuple[Node, ...]
-    edges: tuple[Edge, ...]
-    cells: tuple[Cell, ...]
-    walls: tuple[Wall, ...]
+    nodes: Sequence[Node]
+    edges: Sequence[Edge]
+    cells: Sequence[Cell]
+    walls: Sequence[Wall]
     corners: NDArray[np.float64] | None
-    witnesses: tuple[tuple[RationalPoint, int], ...] = field(repr=False)
+    witnesses: Sequence[tuple[RationalPoint, int]] = field(repr=False)
     locator: Callable[[RationalPoint], int | None] = field(repr=False)
+    tally: Counts | None = field(default=None, repr=False)
+    work: Work | None = None
 
     @cached_property
     def counts(self) -> Counts:
-        """The record of everything that is counted; O(nodes + edges + cells)."""
+        """The record of everything that is counted."""
+        return self.recounted() if self.tally is None else self.tally
+
+    def recounted(self) -> Counts:
+        """The counts, from the objects themselves; O(nodes + edges + cells)."""
         kinds = Counter(node.kind for node in self.nodes)
         ends = sum(node.degree for node in self.nodes if node.kind == "boundary")
         vertices = [node for node in self.nodes if node.kind in VERTEX_KINDS]

@@ -5,13 +5,15 @@ from __future__ import annotations
 import os
 from collections import Counter
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from harness.diagram.counts import Counts, Domain, Objective
 from harness.diagram.fast import chains, domains
-from harness.diagram.fast.arrays import Arrays, glued, joined
+from harness.diagram.fast.arrays import Arrays, CornerNode, glued, joined
 from harness.diagram.fast.build import Leaves, candidates_of, find_leaves, solve_open
+from harness.diagram.fast.hard import LocalMap
 from harness.diagram.fast.nodes import (
     AT_INFINITY,
     BOUNDARY,
@@ -20,9 +22,11 @@ from harness.diagram.fast.nodes import (
     find_nodes,
     unbounded_classes,
 )
+from harness.diagram.fast.points import point_of_piece, port_on_side
 from harness.diagram.fast.prepare import Ints, Prepared, prepare
 from harness.diagram.fast.roots import Roots
 from harness.diagram.fast.ties import Ties, tie_arrays, ties_at_corners
+from harness.diagram.planar_map import RationalPoint
 from harness.diagram.work import Contradiction, Work
 from harness.geometry.instance import Instance
 from harness.geometry.kernel import Kernel, kernel
@@ -52,6 +56,54 @@ class FastDiagram:
     cells: int
     unbounded: set[int]
     work: Work
+    solved: dict[int, LocalMap]
+
+    @cached_property
+    def coarse(self) -> float:
+        """A tolerance that is good enough to see which walk is the outer one."""
+        return float(np.ptp(self.instance.segments.reshape(-1, 2), axis=0).max()) * 1e-3
+
+    @cached_property
+    def domain_corners(self) -> set[int]:
+        """The corners of roots at which the domain's boundary turns."""
+        if self.domain == "plane":
+            return set()
+        walls = self.roots.walls
+        before = {end: wall for (_, end), wall in walls.items()}
+        return {start for (start, _), wall in walls.items() if before[start] != wall}
+
+    def is_endpoint(self, corner: int) -> bool:
+        """Whether a segment ends at a corner of roots."""
+        return any(z & 1 for z in self.roots.corners.incident[corner])
+
+    def segments_at_corner(self, node: CornerNode, around: list[int]) -> list[int]:
+        """The segments that meet at a special corner: those of the cells around it and, unless it
+        is an endpoint, others that tie with them there."""
+        if self.is_endpoint(node.corner):
+            return around
+        lines = {z >> 1 for z in self.roots.corners.incident[node.corner]}
+        return sorted(set(around) | lines) if lines & set(around) else around
+
+    def port_point(self, port: int) -> tuple[float, float]:
+        """A single port as a double point; at infinity, its direction as a unit vector."""
+        x, y, w = port_on_side(
+            self.instance, self.roots, self.leaves, self.arrays, port
+        ).tolist()
+        if self.domain == "plane":
+            length = float(np.hypot(x, y))
+            return x / length, y / length
+        return x / w, y / w
+
+    def step_point(self, corner: int | None, ports: list[int]) -> tuple[float, float]:
+        """A step of the boundary as a double point."""
+        if corner is None:
+            return self.port_point(ports[0])
+        x, y = self.roots.corners.exact[corner]
+        return float(x), float(y)
+
+    def point_of_piece(self, leaf: int, slot: int) -> RationalPoint | None:
+        """A point on the boundary of a leaf between a port and the next one, inside the domain."""
+        return point_of_piece(self.roots, self.leaves, self.arrays, self.instance, leaf, slot)
 
     @property
     def instance(self) -> Instance:
@@ -175,4 +227,5 @@ def _attempt(
             exactly=len(solved),
             workers=workers,
         ),
+        solved=solved,
     )

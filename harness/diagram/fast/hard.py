@@ -27,7 +27,8 @@ class LocalMap:
     ``places``, ``owners``: of the ports (of the only piece, if there is none), then of cells
     without a port and of pseudo ports.  ``arcs``: (end, end, left, right); ends are ports or
     −1 − vertex.  ``vertices``: the nodes, with the half-arcs that leave them, counter-clockwise.
-    ``united``: pairs of slots of one cell.  ``mates``: pairs of pseudo ports (they close loops).
+    ``united``: pairs of slots of one cell.  ``diagram``: the local diagram; ``cell_slots``: a slot of
+    each of its cells.  ``mates``: pairs of pseudo ports (they close loops).
     """
 
     ports: int
@@ -38,6 +39,7 @@ class LocalMap:
     united: list[tuple[int, int]] = field(default_factory=list)
     mates: list[tuple[int, int]] = field(default_factory=list)
     diagram: PlanarMap | None = None
+    cell_slots: dict[int, int] = field(default_factory=dict)
 
 
 def solve(
@@ -75,6 +77,7 @@ class _Reading:
         self.local = LocalMap(len(ports), diagram=diagram)
         self._write_slots(ports)
         self._write_arcs()
+        self.local.cell_slots = self.slot_of_cell
 
     def _owner(self, cell: int) -> int:
         return self.candidates[self.diagram.cells[cell].segment]

@@ -25,7 +25,8 @@ class Nodes:
     """``kind`` (m,): numbers of KINDS.  ``degree`` (m,).  Vertices of leaves come first, then
     ``corners`` (special corners), then single ports on walls and at infinity.
 
-    ``of_port`` (s,): the node of a port, or −1.  ``ports`` (p,): the single ports.
+    ``of_port`` (s,): the node of a port, or −1.  ``ports`` (p,): the single ports.  ``far``: special
+    corners at infinity; each of their ports is a node of its own.
     """
 
     kind: Ints
@@ -33,6 +34,7 @@ class Nodes:
     corners: list[CornerNode]
     ports: Ints
     of_port: Ints
+    far: list[CornerNode]
 
 
 def find_nodes(
@@ -47,7 +49,9 @@ def find_nodes(
     for v, node in arrays.special.items():
         kind[v] = KINDS.index(node.kind)
     degree = np.diff(arrays.out_first)
-    corners = corner_nodes(roots, leaves, arrays)
+    everywhere = corner_nodes(roots, leaves, arrays)
+    corners = [node for node in everywhere if roots.corners.weights[node.corner]]
+    far = [node for node in everywhere if not roots.corners.weights[node.corner]]
     of_port = np.full(len(arrays.place), -1, dtype=np.int64)
     corner_kinds = []
     for k, corner in enumerate(corners):
@@ -66,6 +70,7 @@ def find_nodes(
         corners=corners,
         ports=loose,
         of_port=of_port,
+        far=far,
     )
 
 

@@ -1,0 +1,232 @@
+"""A fast diagram as a planar map, whose objects are made when first asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, TypeVar, overload
+
+import numpy as np
+
+from harness.diagram.counts import Domain, Objective
+from harness.diagram.fast.counting import FastDiagram, fast_diagram
+from harness.diagram.fast.courses import ArcCourse
+from harness.diagram.fast.locate import FastLocator, witnesses
+from harness.diagram.fast.nodes import KINDS, owners_around, root_points, vertex_points
+from harness.diagram.fast.places import place_of
+from harness.diagram.fast.walks import Walks
+from harness.diagram.planar_map import Cell, Edge, Node, PlanarMap, RationalPoint, Wall, Walk
+from harness.diagram.work import Contradiction
+from harness.geometry.instance import Instance
+
+T = TypeVar("T")
+
+
+class Lazy(Sequence[T]):
+    """A tuple of known length that is made when its members are first needed."""
+
+    def __init__(self, length: int, make: Callable[[], tuple[T, ...]]) -> None:
+        """``make`` is called once at most."""
+        self._length = length
+        self._make = make
+        self._made: tuple[T, ...] | None = None
+
+    def _all(self) -> tuple[T, ...]:
+        if self._made is None:
+            self._made = self._make()
+            if len(self._made) != self._length:
+                raise Contradiction(f"{len(self._made)} objects, {self._length} expected")
+        return self._made
+
+    def __len__(self) -> int:
+        return self._length
+
+    @overload
+    def __getitem__(self, index: int) -> T: ...
+    @overload
+    def __getitem__(self, index: slice) -> tuple[T, ...]: ...
+    def __getitem__(self, index: Any) -> Any:
+        return self._all()[index]
+
+    def __iter__(self) -> Iterator[T]:
+        return iter(self._all())
+
+
+def build_fast(
+    instance: Instance,
+    domain: Domain,
+    objective: Objective,
+    corners: Sequence[RationalPoint],
+    workers: int | None = None,
+) -> PlanarMap:
+    """The exact diagram of ``instance`` inside the polygon ``corners`` (none: the plane).
+
+    ``corners``: those of :func:`harness.diagram.domain_corners`.  ``workers``: threads, by default
+    one per processor; the map does not depend on their number.
+
+    Raises Contradiction if every choice of free points failed.
+    """
+    diagram = fast_diagram(instance, domain, objective, workers)
+    tally = diagram.counts()
+    parts = _Parts(diagram)
+    return PlanarMap(
+        instance=instance,
+        domain=domain,
+        objective=objective,
+        builder="fast",
+        certified=True,
+        nodes=Lazy(len(diagram.nodes.kind), parts.nodes),
+        edges=Lazy(len(diagram.edges), parts.edges),
+        cells=Lazy(diagram.cells, parts.cells),
+        walls=parts.walls() if len(diagram.edges) < 1000 else Lazy(len(parts.walls()), parts.walls),
+        corners=np.array([[float(c) for c in corner] for corner in corners]) if corners else None,
+        witnesses=Lazy(diagram.cells, lambda: witnesses(diagram)),
+        locator=FastLocator(diagram),
+        tally=tally,
+        work=diagram.work,
+    )
+
+
+class _Parts:
+    """Makes the objects of the map."""
+
+    def __init__(self, diagram: FastDiagram) -> None:
+        self.diagram = diagram
+        self._walks: Walks | None = None
+
+    @property
+    def walked(self) -> Walks:
+        """The walks, made once."""
+        if self._walks is None:
+            self._walks = Walks(self.diagram)
+        return self._walks
+
+    def nodes(self) -> tuple[Node, ...]:
+        """All nodes."""
+        diagram, arrays, nodes = self.diagram, self.diagram.arrays, self.diagram.nodes
+        result: list[Node] = []
+        points = vertex_points(diagram.roots, diagram.leaves, arrays)
+        for v, point in enumerate(points.tolist()):
+            special = arrays.special.get(v)
+            if special is not None:
+                result.append(special)
+                continue
+            halves = arrays.out[arrays.out_first[v] : arrays.out_first[v + 1]]
+            around = arrays.owner[arrays.arcs[halves >> 1, 2:]]
+            segments = tuple(sorted({int(k) for k in around.ravel()}))
+            kind = KINDS[nodes.kind[v]]
+            result.append(
+                Node(kind, (point[0], point[1]), segments, len(halves), False, _Later(diagram, v))
+            )
+        for corner in nodes.corners:
+            k = len(result)
+            exact = diagram.roots.corners.exact[corner.corner]
+            endpoint = diagram.is_endpoint(corner.corner)
+            result.append(
+                Node(
+                    KINDS[nodes.kind[k]],
+                    (float(exact[0]), float(exact[1])),
+                    tuple(diagram.segments_at_corner(corner, owners_around(arrays, corner))),
+                    len(corner.ports),
+                    endpoint,
+                    _Later(diagram, k),
+                )
+            )
+        for port in nodes.ports.tolist():
+            k = len(result)
+            half = int(arrays.inward[port])
+            pair = sorted({int(x) for x in arrays.owner[arrays.arcs[half >> 1, 2:]]})
+            kind = KINDS[nodes.kind[k]]
+            place = None if kind == "infinity" else _Later(diagram, k)
+            result.append(
+                Node(kind, diagram.port_point(port), tuple(pair), 1, False, place)
+            )
+        return tuple(result)
+
+    def edges(self) -> tuple[Edge, ...]:
+        """All edges."""
+        diagram = self.diagram
+        rows = diagram.edges
+        owners = diagram.arrays.owner[rows[:, 4:6]].tolist()
+        cells = diagram.cell_of_slot[rows[:, 4:6]].tolist()
+        return tuple(
+            Edge(
+                segments=(owner[0], owner[1]),
+                start=None if row[0] < 0 else row[0],
+                end=None if row[0] < 0 else row[1],
+                left=cell[0],
+                right=cell[1],
+                course=ArcCourse(diagram, e),
+            )
+            for e, (row, owner, cell) in enumerate(zip(rows.tolist(), owners, cells, strict=True))
+        )
+
+    def walls(self) -> tuple[Wall, ...]:
+        """All walls."""
+        return tuple(self.walked.walls)
+
+    def cells(self) -> tuple[Cell, ...]:
+        """All cells."""
+        diagram = self.diagram
+        by_cell = self.walked.by_cell()
+        result = []
+        for c, segment in enumerate(diagram.cell_owners().tolist()):
+            walks = by_cell.get(c, [])
+            outer, holes = self._split(walks, c in diagram.unbounded)
+            result.append(Cell(segment, c not in diagram.unbounded, outer, holes))
+        return tuple(result)
+
+    def _split(self, walks: list[Walk], unbounded: bool) -> tuple[Walk | None, tuple[Walk, ...]]:
+        """The outer walk and the holes.
+
+        The outer walk of an unbounded cell passes through infinity, that of a bounded cell is the
+        only one that runs counter-clockwise.
+        """
+        if unbounded:
+            outer = [walk for walk in walks if self._touches_infinity(walk)]
+            if len(outer) > 1:
+                raise Contradiction("an unbounded cell has two outer walks")
+        elif len(walks) <= 1:
+            outer = walks
+        else:
+            outer = [max(walks, key=self._area)]
+        holes = tuple(walk for walk in walks if walk not in outer)
+        return (outer[0] if outer else None), holes
+
+    def _touches_infinity(self, walk: Walk) -> bool:
+        kind = self.diagram.nodes.kind
+        at_infinity = KINDS.index("infinity")
+        return any(
+            node >= 0 and kind[node] == at_infinity
+            for side in walk
+            for node in self.diagram.edges[side.item, :2].tolist()
+        )
+
+    def _area(self, walk: Walk) -> float:
+        """Twice the signed area inside a walk, roughly."""
+        points = []
+        for side in walk:
+            if side.is_wall:
+                points.append(np.array(self.walked.walls[side.item].ends))
+            else:
+                line = ArcCourse(self.diagram, side.item).polyline(self.diagram.coarse, None)
+                points.append(line if side.forward else line[::-1])
+        p = np.concatenate(points)
+        q = np.roll(p, -1, axis=0)
+        return float((p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]).sum())
+
+
+class _Later:
+    """The place of a node, found when first asked for."""
+
+    def __init__(self, diagram: FastDiagram, node: int) -> None:
+        self._diagram = diagram
+        self._node = node
+
+    def enclosure(self, bits: int) -> tuple[RationalPoint, RationalPoint]:
+        """See :class:`harness.diagram.planar_map.Place`."""
+        place = place_of(self._diagram, self._node)
+        assert place is not None
+        return place.enclosure(bits)
+
+
+__all__ = ["Lazy", "build_fast", "root_points"]
