@@ -14,12 +14,10 @@ from __future__ import annotations
 import numpy as np
 
 from harness.diagram.fast.classify import (
-    all_pairs,
+    beaten_by_two,
     classify_definite,
-    classify_mixed,
     is_blurred,
     may_tie_at_corner,
-    new_scratch,
 )
 from harness.diagram.fast.forms import (
     coefficient,
@@ -30,6 +28,8 @@ from harness.diagram.fast.forms import (
 )
 from harness.diagram.fast.jit import compiled
 from harness.diagram.fast.leaves import EMPTY, FAILED, HARD
+from harness.diagram.fast.mixed import classify_mixed
+from harness.diagram.fast.sides import MOST_PAIRED, all_pairs, new_scratch
 from harness.diagram.fast.tables import root_table
 
 LEAF = 3
@@ -191,6 +191,17 @@ def prune(tables, norms, ids, start, m, factor, far, definite, work, world, spot
             ):
                 beaten[a] = 1
                 break
+    kept = keep(tables, norms, ids, start, m, lsign, qsign, beaten)
+    if 1 < kept <= 6:
+        kept = _prune_pairs(
+            tables, norms, ids, start, kept, lsign, qsign, beaten, factor, far, world, spots
+        )
+    return kept, tests
+
+
+@compiled
+def keep(tables, norms, ids, start, m, lsign, qsign, beaten):
+    """Move the candidates that are not beaten to the front; their number."""
     kept = 0
     for a in range(m):
         if not beaten[a]:
@@ -201,11 +212,7 @@ def prune(tables, norms, ids, start, m, factor, far, definite, work, world, spot
                 lsign[kept] = lsign[a]
                 qsign[kept] = qsign[a]
             kept += 1
-    if 1 < kept <= 6:
-        kept = _prune_pairs(
-            tables, norms, ids, start, kept, lsign, qsign, beaten, factor, far, world, spots
-        )
-    return kept, tests
+    return kept
 
 
 @compiled
@@ -236,16 +243,7 @@ def _prune_pairs(
             ):
                 beaten[a] = 1
                 break
-    kept = 0
-    for a in range(m):
-        if not beaten[a]:
-            if kept != a:
-                tables[start + kept] = tables[start + a]
-                norms[start + kept] = norms[start + a]
-                ids[start + kept] = ids[start + a]
-                lsign[kept] = lsign[a]
-                qsign[kept] = qsign[a]
-            kept += 1
+    kept = keep(tables, norms, ids, start, m, lsign, qsign, beaten)
     return kept
 
 
@@ -363,11 +361,11 @@ def subdivide(
     scratch = new_scratch()
     work = (
         np.zeros(4, np.int64),
-        np.zeros(widest, np.int64),
-        np.zeros(widest, np.int64),
-        np.zeros(widest, np.int64),
+        np.zeros(widest + MOST_PAIRED, np.int64),
+        np.zeros(widest + MOST_PAIRED, np.int64),
+        np.zeros(widest + MOST_PAIRED, np.int64),
     )
-    sides = np.ones(4)
+    sides = np.ones(MOST_PAIRED)
     statistics = np.zeros(4, np.int64)
     spots = np.empty(3, np.int64)
     lines, lengths, classes, tie_first, ties = world
@@ -430,12 +428,11 @@ def subdivide(
             if m == 1:
                 kind = EMPTY
                 scratch[4][0, 0], scratch[4][0, 1] = 1, 0
-            elif m <= 4:
+            elif m <= MOST_PAIRED:
                 mixed = False
                 for a in range(m):
                     mixed = mixed or lsign[a] == 0
-                    if a < 4:
-                        sides[a] = lsign[a] if lsign[a] != 0 else 1
+                    sides[a] = lsign[a] if lsign[a] != 0 else 1
                 same_line = (
                     m == 2 and lines[ids[start]] >= 0 and lines[ids[start]] == lines[ids[start + 1]]
                 )
@@ -443,7 +440,18 @@ def subdivide(
                     all_pairs(
                         tables, start, m, sides, norms, factor, far, world, spots, ids, scratch
                     )
-                    kind, ports, choice = classify_definite(m, scratch)
+                    if m > 2 and beaten_by_two(m, scratch, work[3]) < m:
+                        m = keep(tables, norms, ids, start, m, lsign, qsign, work[3])
+                        for a in range(m):
+                            sides[a] = lsign[a] if lsign[a] != 0 else 1
+                        all_pairs(
+                            tables, start, m, sides, norms, factor, far, world, spots, ids, scratch
+                        )
+                    if m == 1:
+                        kind = EMPTY
+                        scratch[4][0, 0], scratch[4][0, 1] = 1, 0
+                    elif m <= 4:
+                        kind, ports, choice = classify_definite(m, scratch)
                     if kind == FAILED and (
                         is_blurred(m, scratch)
                         or may_tie_at_corner(m, scratch, e, lam, triangles[root], special)
