@@ -1,0 +1,363 @@
+"""A leaf's triangle as a chart: its corners and forms exactly, ports and vertices in it.
+
+Points of the triangle are given by barycentric weights λ (summing to 1) of its homogeneous corners
+(x, y, w), so that corners at infinity (w = 0) are nothing special.  Everything is computed in
+rationals and rounded once, which makes the charts of thin or tiny triangles as good as others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cached_property
+from typing import Any, NamedTuple
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from flint import fmpq, fmpq_poly
+
+from harness.diagram.fast.counting import FastDiagram
+from harness.diagram.fast.forms import SIDES, STEPS, value_and_gradient
+from harness.diagram.fast.leaves import CROSSING, EMPTY, QUAD
+from harness.diagram.fast.prepare import Floats, Ints
+from harness.diagram.roots import real_root_balls
+from harness.geometry.exact import fraction, point, rational, sign
+
+#: Barycentric weights.
+Weights = tuple[float, float, float]
+CORNERS: tuple[Weights, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+#: The products q·L, with weights in thirds, in the coefficients of Q·L (order and positions: see
+#: :mod:`harness.diagram.fast.forms`).
+_PRODUCTS = (
+    ((3, 3, 0),),
+    ((3, 4, 1),),
+    ((3, 5, 2),),
+    ((2, 6, 0), (1, 3, 1)),
+    ((2, 7, 0), (1, 3, 2)),
+    ((2, 6, 1), (1, 4, 0)),
+    ((2, 8, 1), (1, 4, 2)),
+    ((2, 7, 2), (1, 5, 0)),
+    ((2, 8, 2), (1, 5, 1)),
+    ((1, 6, 2), (1, 7, 1), (1, 8, 0)),
+)
+#: Pairs of corners in the order 200, 020, 002, 110, 101, 011.
+_SQUARES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+#: Starts of Newton's method if the leaf's own fails.
+_STARTS = [((k + 0.5) / 8, (m + 0.5) / 8) for k in range(8) for m in range(8 - k)]
+
+_rows: WeakKeyDictionary[FastDiagram, Ints] = WeakKeyDictionary()
+
+
+def row_of_leaf(diagram: FastDiagram, leaf: int) -> int:
+    """The row of a leaf that is not empty in ``leaves.shapes``; the table is made once, O(leaves)."""
+    if diagram not in _rows:
+        _rows[diagram] = np.cumsum(diagram.leaves.kinds != EMPTY) - 1
+    return int(_rows[diagram][leaf])
+
+
+def rounded(value: Any) -> float:
+    """The double nearest to a flint rational."""
+    return float(fraction(value))
+
+
+class PortOnSide(NamedTuple):
+    """A port inside a side of its leaf: the ``index``-th of all zeros of a pair's curves there.
+
+    ``position``: the corner from which the side starts.  ``along``: the parameter, as a double.
+    ``sign``: the curve F^± (0 if the segments share a line) that passes through it.
+    """
+
+    position: int
+    index: int
+    along: float
+    sign: int
+
+
+class Chart:
+    """The chart of one leaf that is not empty and was not handed over as hard."""
+
+    def __init__(self, diagram: FastDiagram, leaf: int) -> None:
+        """O(1), after the first chart of a diagram."""
+        self.diagram = diagram
+        self.leaf = leaf
+        self.row = row_of_leaf(diagram, leaf)
+        roots, leaves = diagram.roots, diagram.leaves
+        triangle = roots.triangles[leaves.shape_roots[self.row]].tolist()
+        of_root = [
+            (*point(roots.corners.exact[c]), rational(roots.corners.weights[c])) for c in triangle
+        ]
+        shape = [[rational(x) for x in line] for line in leaves.shapes[self.row].reshape(3, 3)]
+        #: The corners (x, y, w), exactly.
+        self.corners = [
+            tuple(sum((f * c[axis] for f, c in zip(line, of_root, strict=True)), fmpq(0))
+                  for axis in range(3))
+            for line in shape
+        ]
+        self._forms: dict[int, list[Any]] = {}
+
+    @cached_property
+    def rounded_corners(self) -> Floats:
+        """The corners as doubles, (3, 3)."""
+        return np.array([[rounded(c) for c in corner] for corner in self.corners])
+
+    def plane(self, weights: Weights) -> tuple[float, float]:
+        """The point of the plane with given weights; at infinity its direction, of length 1."""
+        x, y, w = (np.array(weights) @ self.rounded_corners).tolist()
+        if w == 0:
+            w = float(np.hypot(x, y))
+        return x / w, y / w
+
+    # -- forms ----------------------------------------------------------------------------------
+
+    def forms(self, segment: int) -> list[Any]:
+        """L₀ L₁ L₂ q₀₀ q₁₁ q₂₂ q₀₁ q₀₂ q₁₂ of a segment, exactly."""
+        if segment not in self._forms:
+            a, b = (point(end) for end in self.diagram.instance.rational_segment(segment))
+            d = b[0] - a[0], b[1] - a[1]
+            to_a = [(a[0] * w - x, a[1] * w - y) for x, y, w in self.corners]
+            to_b = [(b[0] * w - x, b[1] * w - y) for x, y, w in self.corners]
+            table = [p[0] * d[1] - p[1] * d[0] for p in to_a]
+            for k, m in _SQUARES:
+                one = to_a[k][0] * to_b[m][0] + to_a[k][1] * to_b[m][1]
+                two = to_a[m][0] * to_b[k][0] + to_a[m][1] * to_b[k][1]
+                table.append((one + two) / 2)
+            self._forms[segment] = table
+        return self._forms[segment]
+
+    def side_of_line(self, segment: int) -> int:
+        """The sign of L in the interior of the triangle, 0 if it changes."""
+        signs = {sign(value) for value in self.forms(segment)[:3]} - {0}
+        return signs.pop() if len(signs) == 1 else 0
+
+    def signs(self, i: int, j: int) -> tuple[int, ...]:
+        """The curves F^± on which the visual angles of two segments can be equal; (0,) if both are
+        on one line, where F is replaced by the difference of Q_i/|b_i − a_i| and Q_j/|b_j − a_j|."""
+        lines = self.diagram.prepared.lines
+        if lines[i] >= 0 and lines[i] == lines[j]:
+            return (0,)
+        both = self.side_of_line(i) * self.side_of_line(j)
+        return (both,) if both else (1, -1)
+
+    def cubic(self, i: int, j: int, which: int) -> list[Any]:
+        """The ten Bernstein coefficients of F^± of two segments, exactly; see :meth:`signs`.
+
+        If it vanishes at infinity, which is a side of the triangle, then of what is left of it
+        divided by w, raised to degree three.
+        """
+        t, s = self.forms(i), self.forms(j)
+        if which == 0:
+            one, two = self._length(i), self._length(j)
+            return _raised([x * two - y * one for x, y in zip(t[3:], s[3:], strict=True)])
+        result = [
+            sum(
+                (weight * (t[q] * s[line] - which * s[q] * t[line])
+                 for weight, q, line in terms), fmpq(0)) / 3
+            for terms in _PRODUCTS
+        ]
+        for k in range(3):
+            far = all(self.corners[c][2] == 0 for c in range(3) if c != k)
+            if far and all(result[c] == 0 for c in SIDES[k]):
+                quadratic = [
+                    result[STEPS[r, k]] * 3 / (1 + corners.count(k))
+                    for r, corners in enumerate(_SQUARES)
+                ]
+                return _raised(quadratic)
+        return result
+
+    def _length(self, segment: int) -> Any:
+        """The length of a segment in units that all segments on its line share, exactly."""
+        a, b = (point(end) for end in self.diagram.instance.rational_segment(segment))
+        dx, dy = abs(b[0] - a[0]), abs(b[1] - a[1])
+        return dx or dy
+
+    # -- ports ----------------------------------------------------------------------------------
+
+    def pair(self, port: int) -> tuple[int, int]:
+        """The owners of the pieces before and after a port."""
+        arrays = self.diagram.arrays
+        base, count = int(arrays.start[self.leaf]), int(arrays.ports[self.leaf])
+        before = base + (port - base - 1) % count
+        return int(arrays.owner[before]), int(arrays.owner[port])
+
+    def port_on_side(self, port: int) -> PortOnSide:
+        """Where a port with an odd place is on its side."""
+        arrays = self.diagram.arrays
+        place = int(arrays.place[port])
+        base = int(arrays.start[self.leaf])
+        pair = set(self.pair(port))
+        index = sum(
+            arrays.place[p] == place and set(self.pair(p)) == pair for p in range(base, port)
+        )
+        position = place // 2
+        zeros = sorted(
+            (t, which)
+            for which, exact in self._on_side(port, position)
+            for t in zeros_inside([rounded(c) for c in exact])
+        )
+        if index >= len(zeros):
+            raise ArithmeticError(f"port {port} is no zero of its pair's curves")
+        return PortOnSide(position, index, *zeros[index])
+
+    def _on_side(self, port: int, position: int) -> Iterator[tuple[int, list[Any]]]:
+        """The curves of a port's pair on a side: sign, and Bernstein coefficients along it."""
+        i, j = sorted(self.pair(port))
+        for which in self.signs(i, j):
+            cubic = self.cubic(i, j, which)
+            yield which, [cubic[c] for c in SIDES[(position + 2) % 3]]
+
+    def port_ball(self, port: int, bits: int) -> Any:
+        """An enclosure of the parameter of a port along its side, with about ``bits`` bits."""
+        place = self.port_on_side(port)
+        product = fmpq_poly([1])
+        for _, b in self._on_side(port, place.position):
+            product *= _from_bernstein(b)
+        inside = [
+            root
+            for root in real_root_balls(product.numer(), bits)
+            if root > 0 and root < 1
+        ]
+        return inside[place.index]
+
+    # -- vertices and ends of arcs --------------------------------------------------------------
+
+    def tied_at(self, vertex: int) -> tuple[int, ...]:
+        """The owners of the pieces around a vertex of the leaf."""
+        arrays = self.diagram.arrays
+        halves = arrays.out[arrays.out_first[vertex] : arrays.out_first[vertex + 1]]
+        return tuple(sorted({int(k) for k in arrays.owner[arrays.arcs[halves >> 1, 2:]].ravel()}))
+
+    @property
+    def is_crossing(self) -> bool:
+        """Whether the leaf holds the common point of two segments' lines."""
+        return bool(self.diagram.leaves.kinds[self.leaf] == CROSSING)
+
+    def crossing(self) -> tuple[Any, Any, Any]:
+        """The weights of the common point of the lines of a crossing leaf, exactly."""
+        arrays = self.diagram.arrays
+        base = int(arrays.start[self.leaf])
+        f, g = (self.forms(int(arrays.owner[base + k]))[:3] for k in range(2))
+        common = [f[k - 2] * g[k - 1] - f[k - 1] * g[k - 2] for k in range(3)]
+        total = sum(common, fmpq(0))
+        return common[0] / total, common[1] / total, common[2] / total
+
+    def vertex(self, vertex: int) -> Weights:
+        """The weights of a vertex of the leaf, as doubles."""
+        if self.is_crossing:
+            one, two, three = (rounded(x) for x in self.crossing())
+            return one, two, three
+        a, b, c = self.tied_at(vertex)
+        pair = [
+            np.array([rounded(x) for x in self.cubic(a, k, self.signs(a, k)[0])]) for k in (b, c)
+        ]
+        first = tuple(self.diagram.leaves.points[self.row].tolist())
+        starts = _STARTS if self.diagram.leaves.kinds[self.leaf] == QUAD else [first, *_STARTS]
+        for start in (first, *starts):
+            found = _newton(pair[0], pair[1], start)
+            if found is not None:
+                return found
+        raise ArithmeticError(f"no vertex was found in leaf {self.leaf}")
+
+    def end(self, arc: int, half: int) -> Weights:
+        """The weights of an end of an arc."""
+        end = int(self.diagram.arrays.arcs[arc, half])
+        if end < 0:
+            return self.vertex(-1 - end)
+        place = int(self.diagram.arrays.place[end])
+        if place % 2 == 0:
+            return CORNERS[place // 2]
+        at = self.port_on_side(end)
+        weights = [0.0, 0.0, 0.0]
+        weights[at.position], weights[(at.position + 1) % 3] = 1.0 - at.along, at.along
+        return weights[0], weights[1], weights[2]
+
+
+def _raised(g: list[Any]) -> list[Any]:
+    """The cubic Bernstein coefficients of a quadratic form 200, 020, 002, 110, 101, 011."""
+    return [
+        g[0], g[1], g[2],
+        (g[0] + 2 * g[3]) / 3, (g[0] + 2 * g[4]) / 3, (g[1] + 2 * g[3]) / 3,
+        (g[1] + 2 * g[5]) / 3, (g[2] + 2 * g[4]) / 3, (g[2] + 2 * g[5]) / 3,
+        (g[3] + g[4] + g[5]) / 3,
+    ]  # fmt: skip
+
+
+def _from_bernstein(b: list[Any]) -> fmpq_poly:
+    """The polynomial with four given Bernstein coefficients."""
+    return fmpq_poly(
+        [b[0], 3 * (b[1] - b[0]), 3 * (b[0] - 2 * b[1] + b[2]), b[3] - 3 * b[2] + 3 * b[1] - b[0]]
+    )
+
+
+def _newton(f: Floats, g: Floats, start: tuple[float, ...]) -> Weights | None:
+    """The common zero of two cubics in the triangle to which Newton's method leads, if any."""
+    x, y = start
+    out = np.zeros(3)
+    for _ in range(40):
+        value_and_gradient(f, x, y, out)
+        u, ux, uy = out.tolist()
+        value_and_gradient(g, x, y, out)
+        v, vx, vy = out.tolist()
+        det = ux * vy - uy * vx
+        if det == 0.0:
+            return None
+        dx, dy = (u * vy - v * uy) / det, (v * ux - u * vx) / det
+        x, y = x - dx, y - dy
+        if not (abs(x) < 4.0 and abs(y) < 4.0):
+            return None
+        if abs(dx) + abs(dy) < 1e-15:
+            break
+    z = 1.0 - x - y
+    return (z, x, y) if min(x, y, z) > -1e-12 else None
+
+
+def zeros_inside(b: list[float]) -> list[float]:
+    """The zeros in (0, 1) of a polynomial in Bernstein form, increasing; zeros of even order are
+    found only by chance.
+
+    By Descartes' rule: no sign change, no zero; one, one zero; else both halves are looked at.
+    """
+    return [t for t in _zeros(b, 50) if 0.0 < t < 1.0]
+
+
+def _zeros(b: list[float], depth: int) -> list[float]:
+    signs = [c > 0 for c in b if c != 0]
+    changes = sum(x != y for x, y in zip(signs, signs[1:], strict=False))
+    if changes == 0 or depth == 0:
+        return []
+    if changes == 1:
+        return [single_zero(b, signs[0])]
+    left, right = _halves(b)
+    middle = [0.5] if left[-1] == 0 else []
+    before, after = _zeros(left, depth - 1), _zeros(right, depth - 1)
+    return [t / 2 for t in before] + middle + [(1 + t) / 2 for t in after]
+
+
+def _halves(b: list[float]) -> tuple[list[float], list[float]]:
+    left, right = [b[0]], [b[-1]]
+    while len(b) > 1:
+        b = [(x + y) / 2 for x, y in zip(b, b[1:], strict=False)]
+        left.append(b[0])
+        right.append(b[-1])
+    return left, right[::-1]
+
+
+def single_zero(b: list[float], starts_positive: bool) -> float:
+    """The only zero in (0, 1) of a polynomial in Bernstein form, by bisection."""
+    low, high = 0.0, 1.0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        if middle in (low, high):
+            break
+        if (value_at(b, middle) > 0.0) == starts_positive:
+            low = middle
+        else:
+            high = middle
+    return 0.5 * (low + high)
+
+
+def value_at(b: list[float], t: float) -> float:
+    """A cubic (or quadratic) in Bernstein form at t."""
+    s = 1.0 - t
+    if len(b) == 3:
+        return s * s * b[0] + 2.0 * s * t * b[1] + t * t * b[2]
+    return s * s * (s * b[0] + 3.0 * t * b[1]) + t * t * (3.0 * s * b[2] + t * b[3])
