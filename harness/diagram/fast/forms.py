@@ -68,35 +68,35 @@ def mean(x, y):
 
 
 @compiled
-def halve(parent, k, first, second):
+def halve(tables, row, k, other):
     """The tables of both halves of a triangle whose side opposite to corner k is halved.
 
-    With corners P (number k), Q, R in counter-clockwise order and M the middle of QR, they are
-    (P, Q, M) and (P, M, R).
+    With corners P (number k), Q, R in counter-clockwise order and M the middle of QR: (P, Q, M) goes
+    to the row ``other``, (P, M, R) replaces the triangle's own.
     """
     if k == 0:
-        lp, lq, lr = parent[0], parent[1], parent[2]
-        pp, qq, rr = parent[3], parent[4], parent[5]
-        pq, pr, qr = parent[6], parent[7], parent[8]
+        lp, lq, lr = tables[row, 0], tables[row, 1], tables[row, 2]
+        pp, qq, rr = tables[row, 3], tables[row, 4], tables[row, 5]
+        pq, pr, qr = tables[row, 6], tables[row, 7], tables[row, 8]
     elif k == 1:
-        lp, lq, lr = parent[1], parent[2], parent[0]
-        pp, qq, rr = parent[4], parent[5], parent[3]
-        pq, pr, qr = parent[8], parent[6], parent[7]
+        lp, lq, lr = tables[row, 1], tables[row, 2], tables[row, 0]
+        pp, qq, rr = tables[row, 4], tables[row, 5], tables[row, 3]
+        pq, pr, qr = tables[row, 8], tables[row, 6], tables[row, 7]
     else:
-        lp, lq, lr = parent[2], parent[0], parent[1]
-        pp, qq, rr = parent[5], parent[3], parent[4]
-        pq, pr, qr = parent[7], parent[8], parent[6]
+        lp, lq, lr = tables[row, 2], tables[row, 0], tables[row, 1]
+        pp, qq, rr = tables[row, 5], tables[row, 3], tables[row, 4]
+        pq, pr, qr = tables[row, 7], tables[row, 8], tables[row, 6]
     lm = mean(lq, lr)
     pm = mean(pq, pr)
     qm = mean(qq, qr)
     mr = mean(qr, rr)
     mm = mean(qm, mr)
-    first[0], first[1], first[2] = lp, lq, lm
-    first[3], first[4], first[5] = pp, qq, mm
-    first[6], first[7], first[8] = pq, pm, qm
-    second[0], second[1], second[2] = lp, lm, lr
-    second[3], second[4], second[5] = pp, mm, rr
-    second[6], second[7], second[8] = pm, pr, mr
+    tables[other, 0], tables[other, 1], tables[other, 2] = lp, lq, lm
+    tables[other, 3], tables[other, 4], tables[other, 5] = pp, qq, mm
+    tables[other, 6], tables[other, 7], tables[other, 8] = pq, pm, qm
+    tables[row, 0], tables[row, 1], tables[row, 2] = lp, lm, lr
+    tables[row, 3], tables[row, 4], tables[row, 5] = pp, mm, rr
+    tables[row, 6], tables[row, 7], tables[row, 8] = pm, pr, mr
 
 
 #: The products q·L in each coefficient, as positions in a table; −1 fills up.
@@ -119,28 +119,27 @@ SUPPORT = np.array([1, 2, 4, 3, 5, 3, 6, 5, 6, 7])
 
 
 @compiled
-def coefficient(c, t, s):
-    """Coefficient c of Q_t·L_s."""
-    if c == 0:
-        return t[3] * s[0]
-    if c == 1:
-        return t[4] * s[1]
-    if c == 2:
-        return t[5] * s[2]
+def coefficients(tables, i, j, si, sj):
+    """The ten coefficients of Q_i sj L_j − Q_j si L_i, of the candidates in rows i and j."""
+    a, b, c = si * tables[i, 0], si * tables[i, 1], si * tables[i, 2]
+    d, e, f = sj * tables[j, 0], sj * tables[j, 1], sj * tables[j, 2]
+    t3, t4, t5 = tables[i, 3], tables[i, 4], tables[i, 5]
+    t6, t7, t8 = tables[i, 6], tables[i, 7], tables[i, 8]
+    s3, s4, s5 = tables[j, 3], tables[j, 4], tables[j, 5]
+    s6, s7, s8 = tables[j, 6], tables[j, 7], tables[j, 8]
     third = 1.0 / 3.0
-    if c == 3:
-        return (2.0 * t[6] * s[0] + t[3] * s[1]) * third
-    if c == 4:
-        return (2.0 * t[7] * s[0] + t[3] * s[2]) * third
-    if c == 5:
-        return (2.0 * t[6] * s[1] + t[4] * s[0]) * third
-    if c == 6:
-        return (2.0 * t[8] * s[1] + t[4] * s[2]) * third
-    if c == 7:
-        return (2.0 * t[7] * s[2] + t[5] * s[0]) * third
-    if c == 8:
-        return (2.0 * t[8] * s[2] + t[5] * s[1]) * third
-    return (t[6] * s[2] + t[7] * s[1] + t[8] * s[0]) * third
+    return (
+        t3 * d - s3 * a,
+        t4 * e - s4 * b,
+        t5 * f - s5 * c,
+        ((2.0 * t6 * d + t3 * e) - (2.0 * s6 * a + s3 * b)) * third,
+        ((2.0 * t7 * d + t3 * f) - (2.0 * s7 * a + s3 * c)) * third,
+        ((2.0 * t6 * e + t4 * d) - (2.0 * s6 * b + s4 * a)) * third,
+        ((2.0 * t8 * e + t4 * f) - (2.0 * s8 * b + s4 * c)) * third,
+        ((2.0 * t7 * f + t5 * d) - (2.0 * s7 * c + s5 * a)) * third,
+        ((2.0 * t8 * f + t5 * e) - (2.0 * s8 * c + s5 * b)) * third,
+        ((t6 * f + t7 * e + t8 * d) - (s6 * c + s7 * b + s8 * a)) * third,
+    )
 
 
 @compiled
@@ -165,15 +164,18 @@ def relation(i, j, classes, tie_first, ties, spots):
 
 
 @compiled
-def is_structural_zero(c, t, s, si, sj, far, known):
-    """Whether coefficient c of Q_t sj L_s − Q_s si L_t is zero by construction.
+def is_structural_zero(c, tables, i, j, si, sj, far, known):
+    """Whether coefficient c of Q_i sj L_j − Q_j si L_i is zero by construction.
 
     ``far``: the corners at infinity, a bit each.  ``known``: see :func:`relation`.
     """
     zero = True
     for r in range(3):
         q, l = TERMS[c, r, 0], TERMS[c, r, 1]
-        if q >= 0 and not ((t[q] == 0.0 or s[l] == 0.0) and (s[q] == 0.0 or t[l] == 0.0)):
+        if q >= 0 and not (
+            (tables[i, q] == 0.0 or tables[j, l] == 0.0)
+            and (tables[j, q] == 0.0 or tables[i, l] == 0.0)
+        ):
             zero = False
     if zero:
         return True
@@ -181,7 +183,7 @@ def is_structural_zero(c, t, s, si, sj, far, known):
         return True
     if known & 1 and (SUPPORT[c] & ~far) == 0:
         for k in range(3):
-            if SUPPORT[c] >> k & 1 and sj * s[k] != si * t[k]:
+            if SUPPORT[c] >> k & 1 and sj * tables[j, k] != si * tables[i, k]:
                 return False
         return True
     return False
@@ -237,28 +239,38 @@ def sure_signs(values, bound, signs):
 
 
 @compiled
-def surely_positive(t, s, si, sj, bound, far, known):
-    """Whether Q_t sj L_s − Q_s si L_t > 0 in the interior of the triangle."""
+def surely_positive(tables, i, j, si, sj, bound, far, known):
+    """Whether Q_i sj L_j − Q_j si L_i > 0 in the interior of the triangle."""
+    for k in range(3):  # most comparisons fail at a corner
+        if tables[i, 3 + k] * sj * tables[j, k] - tables[j, 3 + k] * si * tables[i, k] < -bound:
+            return False
+    values = coefficients(tables, i, j, si, sj)
+    least = min(
+        min(min(values[0], values[1]), min(values[2], values[3])),
+        min(min(values[4], values[5]), min(values[6], values[7])),
+    )
+    if min(least, min(values[8], values[9])) > bound:
+        return True
     some = False
     for c in range(10):
-        value = sj * coefficient(c, t, s) - si * coefficient(c, s, t)
-        if value > bound:
+        if values[c] > bound:
             some = True
-        elif value < -bound or not is_structural_zero(c, t, s, si, sj, far, known):
+        elif values[c] < -bound or not is_structural_zero(c, tables, i, j, si, sj, far, known):
             return False
     return some
 
 
 @compiled
-def cubic(t, s, si, sj, bound, far, known, values, signs):
-    """Coefficients and certain signs of Q_t sj L_s − Q_s si L_t."""
+def cubic(tables, i, j, si, sj, bound, far, known, values, signs):
+    """Coefficients and certain signs of Q_i sj L_j − Q_j si L_i."""
+    computed = coefficients(tables, i, j, si, sj)
     for c in range(10):
-        value = sj * coefficient(c, t, s) - si * coefficient(c, s, t)
+        value = computed[c]
         if value > bound:
             signs[c] = 1
         elif value < -bound:
             signs[c] = -1
-        elif is_structural_zero(c, t, s, si, sj, far, known):
+        elif is_structural_zero(c, tables, i, j, si, sj, far, known):
             signs[c] = 0
             value = 0.0
         else:
@@ -267,17 +279,17 @@ def cubic(t, s, si, sj, bound, far, known, values, signs):
 
 
 @compiled
-def collinear_quadratic(t, s, length_t, length_s, bound, values, signs):
+def collinear_quadratic(tables, i, j, length_i, length_j, bound, values, signs):
     """The same for two segments on one line: |L| is a common factor, what is left is
 
-    G = Q_t/length_t − Q_s/length_s times both lengths, raised to degree three.
+    G = Q_i/length_i − Q_j/length_j times both lengths, raised to degree three.
     """
-    g200 = t[3] * length_s - s[3] * length_t
-    g020 = t[4] * length_s - s[4] * length_t
-    g002 = t[5] * length_s - s[5] * length_t
-    g110 = t[6] * length_s - s[6] * length_t
-    g101 = t[7] * length_s - s[7] * length_t
-    g011 = t[8] * length_s - s[8] * length_t
+    g200 = tables[i, 3] * length_j - tables[j, 3] * length_i
+    g020 = tables[i, 4] * length_j - tables[j, 4] * length_i
+    g002 = tables[i, 5] * length_j - tables[j, 5] * length_i
+    g110 = tables[i, 6] * length_j - tables[j, 6] * length_i
+    g101 = tables[i, 7] * length_j - tables[j, 7] * length_i
+    g011 = tables[i, 8] * length_j - tables[j, 8] * length_i
     raise_degree(g200, g020, g002, g110, g101, g011, values)
     sure_signs(values, bound, signs)
 

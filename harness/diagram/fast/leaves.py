@@ -125,15 +125,36 @@ def side_value(values, k, t):
 @compiled
 def side_zero(values, k, rising):
     """A parameter near the only zero of the cubic on side k (``rising``: it grows through it)."""
+    # Regula falsi in the Illinois variant: a good guess is enough, nothing depends on it.
     low, high = 0.0, 1.0
-    for _ in range(54):
-        middle = 0.5 * (low + high)
+    at_low, at_high = values[SIDES[k, 0]], values[SIDES[k, 3]]
+    if not rising:
+        at_low, at_high = -at_low, -at_high
+    # Structural zeros at an end count as the sign beyond the zero that is sought.
+    at_low, at_high = min(at_low, -1e-300), max(at_high, 1e-300)
+    middle, last = 0.5, 0
+    for _ in range(40):
+        middle = (low * at_high - high * at_low) / (at_high - at_low)
+        if not low < middle < high:
+            middle = 0.5 * (low + high)
         value = side_value(values, k, middle)
-        if (value > 0.0) == rising:
-            high = middle
+        if not rising:
+            value = -value
+        if value > 0.0:
+            high, at_high = middle, value
+            if last == 1:
+                at_low *= 0.5
+            last = 1
+        elif value < 0.0:
+            low, at_low = middle, value
+            if last == -1:
+                at_high *= 0.5
+            last = -1
         else:
-            low = middle
-    return 0.5 * (low + high)
+            break
+        if high - low < 1e-15:
+            break
+    return middle
 
 
 @compiled

@@ -20,7 +20,7 @@ from harness.diagram.fast.sides import SIDE_AFTER
 
 
 @compiled
-def classify_mixed(t, s, la, lb, q, bound, far, known, w):
+def classify_mixed(tables, i, j, la, lb, q, bound, far, known, w):
     """A leaf of two candidates of which at least one has its line through T; both Q have the sign q.
 
     Let F± = Q_a L_b ∓ Q_b L_a.  As F₊F₋ = Q_a²L_b² − Q_b²L_a², candidate a wins where both have one
@@ -30,8 +30,8 @@ def classify_mixed(t, s, la, lb, q, bound, far, known, w):
     So if their ports alternate there is one crossing, otherwise none.
     """
     values, signs, controls, slots = w[0], w[1], w[3], w[4]
-    cubic(t, s, 1.0, 1.0, bound, far, known, values[0, 1], signs[0, 1])
-    cubic(t, s, -1.0, 1.0, bound, far, known, values[1, 0], signs[1, 0])
+    cubic(tables, i, j, 1.0, 1.0, bound, far, known, values[0, 1], signs[0, 1])
+    cubic(tables, i, j, -1.0, 1.0, bound, far, known, values[1, 0], signs[1, 0])
     for f in range(2):
         a, b = f, 1 - f
         if not has_no_loop(signs[a, b], values[a, b], bound, controls[a, b]):

@@ -31,7 +31,7 @@ from harness.diagram.fast.leaves import (
 #: The side after each corner, by its opposite corner.
 SIDE_AFTER = np.array([2, 0, 1])
 #: Candidates at most of which all pairs are looked at.
-MOST_PAIRED = 8
+MOST_PAIRED = 6
 
 
 @compiled
@@ -60,17 +60,22 @@ def all_pairs(tables, start, m, sides, norms, factor, far, world, spots, ids, w)
     for a in range(m):
         for b in range(a + 1, m):
             i, j = ids[start + a], ids[start + b]
-            t, s = tables[start + a], tables[start + b]
             if lines[i] >= 0 and lines[i] == lines[j]:
                 bound = factor * (norms[start + a, 1] * lengths[j] + norms[start + b, 1] * lengths[i])
-                collinear_quadratic(t, s, lengths[i], lengths[j], bound, values[a, b], signs[a, b])
+                collinear_quadratic(
+                    tables, start + a, start + b, lengths[i], lengths[j], bound, values[a, b],
+                    signs[a, b],
+                )
             else:
                 bound = factor * (
                     norms[start + a, 1] * norms[start + b, 0]
                     + norms[start + b, 1] * norms[start + a, 0]
                 )
                 known = relation(i, j, classes, tie_first, ties, spots)
-                cubic(t, s, sides[a], sides[b], bound, far, known, values[a, b], signs[a, b])
+                cubic(
+                    tables, start + a, start + b, sides[a], sides[b], bound, far, known,
+                    values[a, b], signs[a, b],
+                )
                 if known & 1 and _vanishes_far(signs[a, b], far):
                     near = 0 if far == 6 else (1 if far == 5 else 2)
                     divided_by_distance(values[a, b], signs[a, b], near)
@@ -162,13 +167,14 @@ def _side_pieces(m, k, u, v, w):
         return between
     if not _crosses_once(u, v, k, w):
         return -2
-    t = side_zero(values[u, v], k, False)
-    between = -1
+    t, between = -1.0, -1
     for x in range(m):
         if x in (u, v) or _never_loses(signs[u, x], k) or _never_loses(signs[v, x], k):
             continue
         if not (_crosses_once(u, x, k, w) and _crosses_once(v, x, k, w)):
             return -2
+        if t < 0:
+            t = side_zero(values[u, v], k, False)
         to_u = _loses_at(values, bounds, u, x, k, t)
         to_v = _loses_at(values, bounds, v, x, k, t)
         if to_u == 1 and to_v == 1:

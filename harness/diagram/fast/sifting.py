@@ -15,7 +15,7 @@ def new_work(n):
     """Working space for :func:`sift`."""
     return (
         np.empty((n, 9)),
-        np.empty((n, 2)),
+        np.empty((n, 5)),
         (np.zeros(4, np.int64), np.zeros(n, np.int64), np.zeros(n, np.int64), np.zeros(n, np.int64)),
         np.full(3, -1),
     )
@@ -26,7 +26,7 @@ def sift(ids, m, corners, weights, far, segments, size, sense, definite, world, 
     """Keep in ``ids`` (m,) the candidates that no pivot beats all over a triangle; their number."""
     tables, norms, work, spots = w
     for a in range(m):
-        root_table(segments[ids[a]], corners, weights, 0, 0, size, sense, tables[a], norms[a])
+        root_table(segments[ids[a]], corners, weights, 0, 0, size, sense, tables[a], norms[a, 0:2])
     kept, _ = prune(
         tables, norms, ids, 0, m, error_factor(0), far, definite, work, world, spots
     )

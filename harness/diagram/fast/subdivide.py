@@ -20,7 +20,7 @@ from harness.diagram.fast.classify import (
     may_tie_at_corner,
 )
 from harness.diagram.fast.forms import (
-    coefficient,
+    coefficients,
     error_factor,
     halve,
     relation,
@@ -50,14 +50,13 @@ def grown(array, needed):
 
 
 @compiled
-def localise(norms, start, m, lam):
+def localise(norms, start, m, lam, share):
     """ML and MQ of all candidates on a triangle, columns 0 and 1, from those of the root, 2 and 3.
 
     Column 4 holds the root's corners at which L is zero (3 bits) and at which Q is (3 bits).  At
     a point λ only the other corners contribute to L, so |L| ≤ ML·Σ λ_k over these, and roundings
     are as much smaller.  If Q is zero at just one corner, |q(λ, λ')| ≤ MQ·(Σ λ_k + Σ λ'_k) likewise.
     """
-    share = np.ones(8)
     for bits in range(1, 8):
         most = 0.0
         for p in range(3):
@@ -77,15 +76,15 @@ def localise(norms, start, m, lam):
 
 
 @compiled
-def _line_sign(t, error):
+def _line_sign(tables, row, error):
     """The sign of L on the triangle if it is certainly constant in its interior, else 0."""
     positive = negative = 0
     for k in range(3):
-        if t[k] > error:
+        if tables[row, k] > error:
             positive += 1
-        elif t[k] < -error:
+        elif tables[row, k] < -error:
             negative += 1
-        elif t[k] != 0.0:
+        elif tables[row, k] != 0.0:
             return 0
     if positive and negative:
         return 0
@@ -93,15 +92,15 @@ def _line_sign(t, error):
 
 
 @compiled
-def _form_sign(t, error):
+def _form_sign(tables, row, error):
     """1 if Q ≥ 0 on the triangle, −1 if Q ≤ 0, certainly; else 0."""
     positive = negative = 0
     for k in range(3, 9):
-        if t[k] > error:
+        if tables[row, k] > error:
             positive += 1
-        elif t[k] < -error:
+        elif tables[row, k] < -error:
             negative += 1
-        elif t[k] != 0.0:
+        elif tables[row, k] != 0.0:
             return 0
     if positive and negative:
         return 0
@@ -109,33 +108,33 @@ def _form_sign(t, error):
 
 
 @compiled
-def beats(t, s, lt, ls, qt, qs, bound, far, known):
+def beats(tables, i, j, lt, ls, qt, qs, bound, far, known):
     """Whether the first candidate certainly wins against the second all over the triangle.
 
     ``lt``, ``ls``: signs of L (0: not constant).  ``qt``, ``qs``: signs of Q (0: not constant).
     """
     if lt != 0 and ls != 0:
-        return surely_positive(t, s, lt, ls, bound, far, known)
+        return surely_positive(tables, i, j, lt, ls, bound, far, known)
     if qt == 1 and qs == -1:
         return True
     if lt != 0:  # |L_s| is ±L_s: one sign suffices where Q_t ≥ 0, else take both
-        one = surely_positive(t, s, lt, 1.0, bound, far, known)
+        one = surely_positive(tables, i, j, lt, 1.0, bound, far, known)
         if qt == 1:
-            return one or surely_positive(t, s, lt, -1.0, bound, far, known)
-        return one and surely_positive(t, s, lt, -1.0, bound, far, known)
+            return one or surely_positive(tables, i, j, lt, -1.0, bound, far, known)
+        return one and surely_positive(tables, i, j, lt, -1.0, bound, far, known)
     if ls != 0:  # likewise for |L_t|, where Q_s ≤ 0
-        one = surely_positive(t, s, 1.0, ls, bound, far, known)
+        one = surely_positive(tables, i, j, 1.0, ls, bound, far, known)
         if qs == -1:
-            return one or surely_positive(t, s, -1.0, ls, bound, far, known)
-        return one and surely_positive(t, s, -1.0, ls, bound, far, known)
+            return one or surely_positive(tables, i, j, -1.0, ls, bound, far, known)
+        return one and surely_positive(tables, i, j, -1.0, ls, bound, far, known)
     return False
 
 
 @compiled
-def collinear_beats(t, s, length_t, length_s, bound):
+def collinear_beats(tables, i, j, length_i, length_j, bound):
     """The same for two segments on one line: G > 0."""
     for k in range(3, 9):
-        if not t[k] * length_s - s[k] * length_t > bound:
+        if not tables[i, k] * length_j - tables[j, k] * length_i > bound:
             return False
     return True
 
@@ -145,12 +144,13 @@ def _best_at(tables, start, m, corner):
     """The candidate with the greatest Q/|L| at a corner (3: the middle), in doubles."""
     best, bq, bl = -1, 0.0, 1.0
     for a in range(m):
-        t = tables[start + a]
+        r = start + a
         if corner < 3:
-            q, line = t[3 + corner], abs(t[corner])
+            q, line = tables[r, 3 + corner], abs(tables[r, corner])
         else:
-            q = t[3] + t[4] + t[5] + 2.0 * (t[6] + t[7] + t[8])
-            line = abs(t[0] + t[1] + t[2])
+            q = tables[r, 3] + tables[r, 4] + tables[r, 5]
+            q += 2.0 * (tables[r, 6] + tables[r, 7] + tables[r, 8])
+            line = abs(tables[r, 0] + tables[r, 1] + tables[r, 2])
         if q == 0.0 and line == 0.0:
             continue
         if best < 0 or q * bl > bq * line:
@@ -177,8 +177,8 @@ def prune(tables, norms, ids, start, m, factor, far, definite, work, world, spot
             lsign[a] = 1
             qsign[a] = 0
         else:
-            lsign[a] = _line_sign(tables[start + a], factor * norms[start + a, 0])
-            qsign[a] = _form_sign(tables[start + a], factor * norms[start + a, 1])
+            lsign[a] = _line_sign(tables, start + a, factor * norms[start + a, 0])
+            qsign[a] = _form_sign(tables, start + a, factor * norms[start + a, 1])
     tests = 0
     for a in range(m):
         for r in range(count):
@@ -206,8 +206,10 @@ def keep(tables, norms, ids, start, m, lsign, qsign, beaten):
     for a in range(m):
         if not beaten[a]:
             if kept != a:
-                tables[start + kept] = tables[start + a]
-                norms[start + kept] = norms[start + a]
+                for c in range(9):
+                    tables[start + kept, c] = tables[start + a, c]
+                for c in range(5):
+                    norms[start + kept, c] = norms[start + a, c]
                 ids[start + kept] = ids[start + a]
                 lsign[kept] = lsign[a]
                 qsign[kept] = qsign[a]
@@ -219,15 +221,14 @@ def keep(tables, norms, ids, start, m, lsign, qsign, beaten):
 def _tested(tables, norms, ids, start, p, a, lsign, qsign, factor, far, world, spots):
     lines, lengths, classes, tie_first, ties = world
     i, j = ids[start + p], ids[start + a]
-    t, s = tables[start + p], tables[start + a]
     if lines[i] >= 0 and lines[i] == lines[j]:
         bound = factor * (norms[start + p, 1] * lengths[j] + norms[start + a, 1] * lengths[i])
-        return collinear_beats(t, s, lengths[i], lengths[j], bound)
+        return collinear_beats(tables, start + p, start + a, lengths[i], lengths[j], bound)
     bound = factor * (
         norms[start + p, 1] * norms[start + a, 0] + norms[start + a, 1] * norms[start + p, 0]
     )
     known = relation(i, j, classes, tie_first, ties, spots)
-    return beats(t, s, lsign[p], lsign[a], qsign[p], qsign[a], bound, far, known)
+    return beats(tables, start + p, start + a, lsign[p], lsign[a], qsign[p], qsign[a], bound, far, known)
 
 
 @compiled
@@ -280,17 +281,14 @@ def side_to_halve(tables, start, m, depth, lsign):
     zeros, turning = np.zeros(3, np.int64), np.zeros(3, np.int64)
     along = np.zeros(3)
     pairs = 0
-    t = tables[start]
-    c = np.empty(10)
     for a in range(1, min(m, 6)):
-        s = tables[start + a]
         both = lsign[0] == 0 or lsign[a] == 0
         for sign in range(2 if both else 1):
             st = -1.0 if lsign[0] < 0 else 1.0
             ss = -1.0 if (lsign[a] < 0) != (sign == 1) else 1.0
+            c = coefficients(tables, start, start + a, st, ss)
             size = 0.0
             for r in range(10):
-                c[r] = ss * coefficient(r, t, s) - st * coefficient(r, s, t)
                 size = max(size, abs(c[r]))
             if size == 0.0:
                 continue
@@ -368,6 +366,9 @@ def subdivide(
     sides = np.ones(MOST_PAIRED)
     statistics = np.zeros(4, np.int64)
     spots = np.empty(3, np.int64)
+    share = np.ones(8)
+    e = np.empty(3, np.int64)
+    lam = np.empty(9)
     lines, lengths, classes, tie_first, ties = world
     root_corners = np.empty((3, 4))
     root_weights = np.empty(3)
@@ -404,9 +405,10 @@ def subdivide(
         top = 1
         while top > 0:
             top -= 1
-            start, m, depth, patience, far = frames[top]
-            e = exponents[top].copy()
-            lam = corners[top].copy()
+            start, m, depth = frames[top, 0], frames[top, 1], frames[top, 2]
+            patience, far = frames[top, 3], frames[top, 4]
+            e[:] = exponents[top]
+            lam[:] = corners[top]
             factor = error_factor(depth)
             for k in range(3):
                 spots[k] = -1
@@ -415,7 +417,7 @@ def subdivide(
                         corner = triangles[root, c]
                         if lam[3 * k + c] == 1.0 and tie_first[corner] < tie_first[corner + 1]:
                             spots[k] = corner
-            localise(norms, start, m, lam)
+            localise(norms, start, m, lam, share)
             kept, tests = prune(
                 tables, norms, ids, start, m, factor, far, definite, work, world, spots
             )
@@ -464,7 +466,7 @@ def subdivide(
                     )
                     known = relation(i, j, classes, tie_first, ties, spots)
                     kind, ports, choice = classify_mixed(
-                        tables[start], tables[start + 1], lsign[0], lsign[1], qsign[0], bound, far,
+                        tables, start, start + 1, lsign[0], lsign[1], qsign[0], bound, far,
                         known, scratch,
                     )
             k = side_to_halve(tables, start, m, depth, lsign) if kind == FAILED else 0
@@ -482,8 +484,7 @@ def subdivide(
                 norms = grown(norms, top_needed)
                 ids = grown(ids, top_needed)
                 for a in range(m):
-                    parent = tables[start + a].copy()
-                    halve(parent, k, tables[start + m + a], tables[start + a])
+                    halve(tables, start + a, k, start + m + a)
                     norms[start + m + a] = norms[start + a]
                     ids[start + m + a] = ids[start + a]
                 if top + 2 > len(frames):
