@@ -22,11 +22,9 @@ from harness.diagram.fast.nodes import (
     find_nodes,
     unbounded_classes,
 )
-from harness.diagram.fast.points import point_of_piece, port_on_side
 from harness.diagram.fast.prepare import Ints, Prepared, prepare
 from harness.diagram.fast.roots import Roots
 from harness.diagram.fast.ties import Ties, tie_arrays, ties_at_corners
-from harness.diagram.planar_map import RationalPoint
 from harness.diagram.work import Contradiction, Work
 from harness.geometry.instance import Instance
 from harness.geometry.kernel import Kernel, kernel
@@ -83,27 +81,6 @@ class FastDiagram:
             return around
         lines = {z >> 1 for z in self.roots.corners.incident[node.corner]}
         return sorted(set(around) | lines) if lines & set(around) else around
-
-    def port_point(self, port: int) -> tuple[float, float]:
-        """A single port as a double point; at infinity, its direction as a unit vector."""
-        x, y, w = port_on_side(
-            self.instance, self.roots, self.leaves, self.arrays, port
-        ).tolist()
-        if self.domain == "plane":
-            length = float(np.hypot(x, y))
-            return x / length, y / length
-        return x / w, y / w
-
-    def step_point(self, corner: int | None, ports: list[int]) -> tuple[float, float]:
-        """A step of the boundary as a double point."""
-        if corner is None:
-            return self.port_point(ports[0])
-        x, y = self.roots.corners.exact[corner]
-        return float(x), float(y)
-
-    def point_of_piece(self, leaf: int, slot: int) -> RationalPoint | None:
-        """A point on the boundary of a leaf between a port and the next one, inside the domain."""
-        return point_of_piece(self.roots, self.leaves, self.arrays, self.instance, leaf, slot)
 
     @property
     def instance(self) -> Instance:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from itertools import pairwise
 
 import numpy as np
 
+from harness.diagram.fast.chart import Chart
 from harness.diagram.fast.counting import FastDiagram
 from harness.diagram.fast.jit import compiled
 from harness.diagram.fast.hard import solve
@@ -93,7 +95,7 @@ def _on_some_side(diagram: FastDiagram, cell: int) -> RationalPoint:
     for slot in slots.tolist():
         leaf = int(np.searchsorted(arrays.start, slot, side="right")) - 1
         if arrays.ports[leaf] and arrays.start[leaf] <= slot < arrays.start[leaf] + arrays.ports[leaf]:
-            point = diagram.point_of_piece(leaf, slot)
+            point = point_of_piece(diagram, leaf, slot)
             if point is not None:
                 return point
     for leaf, local in diagram.solved.items():
@@ -105,6 +107,71 @@ def _on_some_side(diagram: FastDiagram, cell: int) -> RationalPoint:
                     if k >= 0 and local.cell_slots.get(k) == slot - base:
                         return point
     raise ArithmeticError(f"no point of cell {cell} was found")
+
+
+def point_of_piece(diagram: FastDiagram, leaf: int, slot: int) -> RationalPoint | None:
+    """An exact point of a leaf's piece between a port and the next one.
+
+    A corner of the leaf, if one lies between them, or a point halfway along a part of a side; off
+    the boundary of the domain if possible; a little inside if all of the piece is at infinity.
+    """
+    arrays, roots = diagram.arrays, diagram.roots
+    chart = Chart(diagram, leaf)
+    root = int(diagram.leaves.shape_roots[chart.row])
+    shape = [[Fraction(x) for x in line] for line in diagram.leaves.shapes[chart.row].reshape(3, 3)]
+    base, count = int(arrays.start[leaf]), int(arrays.ports[leaf])
+
+    def position(port: int) -> Fraction:
+        """Corner k is at k; the side after it runs to k + 1."""
+        k, on_side = divmod(int(arrays.place[port]), 2)
+        return k + (Fraction(chart.port_on_side(port).along) if on_side else Fraction(0))
+
+    following = base + (slot - base + 1) % count
+    low, high = position(slot), position(following)
+    if following <= slot:
+        high += 3
+    stops = [low, *(Fraction(k) for k in range(7) if low < k < high), high]
+    best: tuple[bool, int, RationalPoint] | None = None
+    for number, at in enumerate([*stops[1:-1], *((x + y) / 2 for x, y in pairwise(stops))]):
+        k, t = int(at) % 3, at - int(at)
+        weights = [x + t * (y - x) for x, y in zip(shape[k], shape[(k + 1) % 3], strict=True)]
+        point = exact_point(roots, root, weights) or _inwards(diagram, root, weights, shape, slot)
+        if point is not None and max(weights) < 1:
+            on_wall = any(weights[c] == 0 and arrays.opposite[root, c] < 0 for c in range(3))
+            if best is None or (on_wall, number) < best[:2]:
+                best = (on_wall, number, point)
+    return best[2] if best else None
+
+
+def _inwards(
+    diagram: FastDiagram, root: int, weights: list[Fraction], shape: list[list[Fraction]], slot: int
+) -> RationalPoint | None:
+    """A point near one at infinity, towards the middle of a leaf, where the slot's owner wins."""
+    owner = int(diagram.arrays.owner[slot])
+    middle = [sum(column, Fraction(0)) / 3 for column in zip(*shape, strict=True)]
+    for bits in range(4, 64, 4):
+        t = Fraction(1, 2**bits)
+        inside = [x + t * (y - x) for x, y in zip(weights, middle, strict=True)]
+        point = exact_point(diagram.roots, root, inside)
+        if point is not None and winner_at(diagram, point) == owner:
+            return point
+    return None
+
+
+def winner_at(diagram: FastDiagram, point: RationalPoint) -> int | None:
+    """The only winner at an exact point, or None; O(n)."""
+    sense = 1 if diagram.objective == "smallest" else -1
+    segments = diagram.instance.rational_segments()
+    best, tied = 0, False
+    for k in range(1, len(segments)):
+        order = compare_visual_angles(point, segments[best], segments[k])
+        if order is None:
+            return None
+        if order * sense > 0:
+            best, tied = k, False
+        elif order == 0:
+            tied = True
+    return None if tied else best
 
 
 @compiled
@@ -136,7 +203,7 @@ class FastLocator:
         root, weights = where
         if self._on_boundary(root, weights):
             return None
-        winner = self._winner(point)
+        winner = winner_at(self.diagram, point)
         if winner is None:
             return None
         leaf, shape = self._descend(root, weights)
@@ -160,21 +227,6 @@ class FastLocator:
         assert local.diagram is not None
         cell = local.diagram.locator(point)
         return None if cell is None else int(diagram.cell_of_slot[base + local.cell_slots[cell]])
-
-    def _winner(self, point: RationalPoint) -> int | None:
-        """The only winner at a point, or None."""
-        sense = 1 if self.diagram.objective == "smallest" else -1
-        segments = self.diagram.instance.rational_segments()
-        best, tied = 0, False
-        for k in range(1, len(segments)):
-            order = compare_visual_angles(point, segments[best], segments[k])
-            if order is None:
-                return None
-            if order * sense > 0:
-                best, tied = k, False
-            elif order == 0:
-                tied = True
-        return None if tied else best
 
     def _root(self, point: RationalPoint) -> tuple[int, list[Fraction]] | None:
         """A root that contains the point and the point's barycentric coordinates in it."""

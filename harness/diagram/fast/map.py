@@ -11,8 +11,8 @@ from harness.diagram.counts import Domain, Objective
 from harness.diagram.fast.counting import FastDiagram, fast_diagram
 from harness.diagram.fast.courses import ArcCourse
 from harness.diagram.fast.locate import FastLocator, witnesses
-from harness.diagram.fast.nodes import KINDS, owners_around, root_points, vertex_points
-from harness.diagram.fast.places import place_of
+from harness.diagram.fast.nodes import KINDS, owners_around, vertex_points
+from harness.diagram.fast.places import node_point, place_of
 from harness.diagram.fast.walks import Walks
 from harness.diagram.planar_map import Cell, Edge, Node, PlanarMap, RationalPoint, Wall, Walk
 from harness.diagram.work import Contradiction
@@ -138,7 +138,7 @@ class _Parts:
             kind = KINDS[nodes.kind[k]]
             place = None if kind == "infinity" else _Later(diagram, k)
             result.append(
-                Node(kind, diagram.port_point(port), tuple(pair), 1, False, place)
+                Node(kind, node_point(diagram, k), tuple(pair), 1, False, place)
             )
         return tuple(result)
 
@@ -228,5 +228,3 @@ class _Later:
         assert place is not None
         return place.enclosure(bits)
 
-
-__all__ = ["Lazy", "build_fast", "root_points"]

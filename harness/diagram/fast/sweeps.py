@@ -1,40 +1,42 @@
-"""Arcs of a leaf, one point at a time.
+"""Stretches of a curve F = 0 in a triangle, one point at a time.
 
-An arc is swept by segments, one for every r in (0, 1), each of which meets its curve F = 0 just
-once, so that F changes sign there.  Which segments do that follows from why the leaf was accepted
-(:mod:`harness.diagram.fast.leaves`):
+A stretch is swept by segments, one for every r in (0, 1), each of which meets it just once, so that
+F changes sign there.  There are two kinds of triangles in which that is easy:
 
-cone     F increases along a direction d: parallels to d through the points of the arc's chord.
-radial   F has a double zero at a corner C and one zero on every ray from there.  An arc that does
-         not end at C is swept by rays; one that does may be nearly straight, and is swept across:
-         between the ray along which it leaves C and the ray through its other end.
-saddle   rays from the only critical point of F, through the points of the arc's chord.
+cone     F increases along a direction d: segments parallel to d, through points of the chord.
+radial   F has a double zero at a corner C; on a ray it is s²(α + sβ) at distance s, so there is one
+         more zero at most.  A stretch that does not end at C is swept by rays; one that does may be
+         nearly straight, and is swept across: between the ray along which it leaves C and the ray
+         through its other end.
+
+Either way the curve is a graph over a coordinate, and its ends on the boundary, sorted by it, belong
+together in pairs.  Other triangles are halved.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
-from harness.diagram.fast.chart import (
-    CORNERS,
-    Chart,
-    Weights,
-    rounded,
-    single_zero,
-    value_at,
-    zeros_inside,
-)
-from harness.diagram.fast.forms import STEPS, gradient_controls, value_and_gradient
+from harness.diagram.fast.chart import CORNERS, Weights, single_zero, zeros_inside
+from harness.diagram.fast.forms import SIDES, STEPS
 from harness.diagram.fast.leaves import has_cone
-from harness.diagram.fast.prepare import Floats
 
 Segment = tuple[Weights, Weights]
 #: The coefficients of F that are of first order in the weight of a corner, in the order of the
 #: directions from there to the next corner and to the one after that.
 _NEAR = ((5, 9, 7), (8, 9, 3), (4, 9, 6))
+#: The multiplicities of corners 0, 1, 2 in each coefficient's index.
+_INDICES = (
+    (0, 0, 0), (1, 1, 1), (2, 2, 2), (0, 0, 1), (0, 0, 2), (0, 1, 1), (1, 1, 2), (0, 2, 2),
+    (1, 2, 2), (0, 1, 2),
+)  # fmt: skip
+#: Sides are cut here, lest a symmetric curve runs through the cut.
+_CUT = 0.4877
+_DEEPEST = 80
 
 
 def combination(p: Weights, q: Weights, t: float) -> Weights:
@@ -43,169 +45,279 @@ def combination(p: Weights, q: Weights, t: float) -> Weights:
     return s * p[0] + t * q[0], s * p[1] + t * q[1], s * p[2] + t * q[2]
 
 
-class LeafArc:
-    """An arc of a leaf that is not hard, run through from its first end (r = 0) to its last (r = 1).
+@dataclass(frozen=True)
+class Triangle:
+    """A part of a leaf: its corners in the leaf's weights, and F in Bernstein form on it.
 
-    ``pair``: the segments to the left and right.
+    ``centre``: the number of the corner at which F has a double zero, if that is what makes the
+    triangle easy; else ``increase``, a direction (in the triangle's weights) in which F increases.
     """
 
-    def __init__(self, chart: Chart, arc: int, which: int | None = None) -> None:
-        """``which``: the curve (see :meth:`Chart.signs`), found out if not given."""
-        self.chart = chart
-        self.arc = arc
-        arrays = chart.diagram.arrays
-        self.pair = int(arrays.owner[arrays.arcs[arc, 2]]), int(arrays.owner[arrays.arcs[arc, 3]])
-        self.ends = chart.end(arc, 0), chart.end(arc, 1)
-        self.which = self._which() if which is None else which
-        self.cubic = [rounded(c) for c in chart.cubic(*self.pair, self.which)]
-        self._coefficients: Floats = np.array(self.cubic)
-        self._across = self._sweep()
+    corners: tuple[Weights, Weights, Weights]
+    cubic: list[float]
+    centre: int | None = None
+    increase: Weights = (0.0, 0.0, 0.0)
 
-    def _which(self) -> int:
-        """The curve that the arc is part of.
+    def to_leaf(self, p: Weights) -> Weights:
+        """A point of the triangle in the weights of the leaf."""
+        a, b, c = self.corners
+        return _sum3(p[0], a, p[1], b, p[2], c)
 
-        Where that is open, a port inside a side tells; else the segment that must win to the left.
-        """
-        signs = self.chart.signs(*self.pair)
-        if len(signs) == 1:
-            return signs[0]
-        arrays = self.chart.diagram.arrays
-        for end in arrays.arcs[self.arc, :2].tolist():
-            if end >= 0 and arrays.place[end] % 2:
-                return self.chart.port_on_side(end).sign
-        one, two = (LeafArc(self.chart, self.arc, which) for which in signs)
-        return one.which if one.gain_to_the_left() > two.gain_to_the_left() else two.which
+    def from_leaf(self, p: Weights) -> Weights:
+        """The reverse."""
+        if self.corners == CORNERS:
+            return p
+        z, x, y = np.linalg.solve(np.array(self.corners).T, np.array(p)).tolist()
+        return z, x, y
 
-    def gain_to_the_left(self) -> float:
-        """How fast the segment to the left gains on the other to the left of r = ½, relative to all
-        slopes of F: positive if this is the right curve."""
-        sense = 1 if self.chart.diagram.objective == "smallest" else -1
-        weights = self.at(0.5)
-        slope = self.tangent(weights)
-        (one, two), (_, x, y) = (self.at(0.4), self.at(0.6)), weights
-        along = slope[1] * (two[1] - one[1]) + slope[2] * (two[2] - one[2])
-        line = self.chart.forms(self.pair[1])[:3]
-        side = sum(w * rounded(value) for w, value in zip(weights, line, strict=True))
-        return math.copysign(1.0, side) * sense * along if x + y else 0.0
+    def coordinate(self, p: Weights) -> float:
+        """That over which the curve is a graph: across the increase of F, or about the centre."""
+        if self.centre is None:
+            _, dx, dy = self.increase
+            return dx * p[2] - dy * p[1]
+        k = self.centre
+        if p == CORNERS[k]:
+            return self.heading()
+        return p[(k + 2) % 3] / (p[(k + 1) % 3] + p[(k + 2) % 3])
 
-    def tangent(self, weights: Weights) -> Weights:
-        """A direction along the curve, with F > 0 to its left; F′ turned by a right angle."""
-        out = np.zeros(3)
-        value_and_gradient(self._coefficients, weights[1], weights[2], out)
-        _, fx, fy = out.tolist()
-        return fx - fy, fy, -fx
-
-    def at(self, r: float) -> Weights:
-        """The point of the arc at r ∈ [0, 1]."""
-        if r <= 0.0:
-            return self.ends[0]
-        if r >= 1.0:
-            return self.ends[1]
-        p, q = self._across(r)
-        return combination(p, q, self._zero_between(p, q))
-
-    def _zero_between(self, p: Weights, q: Weights) -> float:
-        """Where F is zero between two points; at the end where it is nearest to zero, if rounding
-        leaves no change of sign."""
-        b = _along(self.cubic, p, q)
-        signs = [c > 0 for c in b if c != 0]
-        if signs and signs[0] != signs[-1]:
-            return single_zero(b, signs[0])
-        return 0.0 if b[0] != 0 and abs(b[0]) < abs(b[3]) else 1.0
-
-    # -- sweeps ---------------------------------------------------------------------------------
-
-    def _sweep(self) -> Callable[[float], Segment]:
-        controls = np.zeros((6, 2))
-        if has_cone(self._coefficients, 0.0, controls):
-            gx, gy = controls.sum(axis=0).tolist()
-            return self._parallels((-gx - gy, gx, gy))
-        for corner in range(3):
-            if all(self.cubic[c] == 0 for c in STEPS[corner]):
-                return self._from_corner(corner)
-        return self._rays(self._critical_point())
-
-    def _parallels(self, d: Weights) -> Callable[[float], Segment]:
-        def across(r: float) -> Segment:
-            x = combination(*self.ends, r)
-            reach = [-a / b for a, b in zip(x, d, strict=True) if b > 0]
-            back = [-a / b for a, b in zip(x, d, strict=True) if b < 0]
-            low, high = max(reach), min(back)
-            return _moved(x, d, low), _moved(x, d, high)
-
-        return across
-
-    def _rays(self, centre: Weights) -> Callable[[float], Segment]:
-        def across(r: float) -> Segment:
-            x = combination(*self.ends, r)
-            d = x[0] - centre[0], x[1] - centre[1], x[2] - centre[2]
-            out = [-a / b for a, b in zip(centre, d, strict=True) if b < 0]
-            return centre, _moved(centre, d, min(out))
-
-        return across
-
-    def _from_corner(self, corner: int) -> Callable[[float], Segment]:
-        at = CORNERS[corner]
-        if at not in self.ends:
-            return self._rays(at)
-        other = self.ends[1] if self.ends[0] == at else self.ends[0]
-        u = other[(corner + 2) % 3] / (1.0 - other[corner])
-        far_ends = self.far_point(corner, self.heading(corner)), self.far_point(corner, u)
-        reach = 1.0 - other[corner]
-
-        def across(r: float) -> Segment:
-            t = reach * (r if self.ends[0] == at else 1.0 - r)
-            return combination(at, far_ends[0], t), combination(at, far_ends[1], t)
-
-        return across
-
-    def heading(self, corner: int) -> float:
-        """The direction in which the curve leaves a corner where F has a double zero, as the
-        parameter of a point on the side opposite to it."""
-        near = [self.cubic[c] for c in _NEAR[corner]]
+    def heading(self) -> float:
+        """The direction in which the curve leaves the centre, as the parameter of a point on the
+        side opposite to it."""
+        assert self.centre is not None
+        near = [self.cubic[c] for c in _NEAR[self.centre]]
         zeros = zeros_inside(near)
-        if len(zeros) == 1:
+        if zeros:
             return zeros[0]
         return 0.0 if abs(near[0]) < abs(near[2]) else 1.0
 
-    @staticmethod
-    def far_point(corner: int, u: float) -> Weights:
-        """The point with parameter u on the side opposite to a corner."""
-        return combination(CORNERS[(corner + 1) % 3], CORNERS[(corner + 2) % 3], u)
+    def far_point(self, u: float) -> Weights:
+        """The point with parameter u on the side opposite to the centre."""
+        assert self.centre is not None
+        return combination(CORNERS[(self.centre + 1) % 3], CORNERS[(self.centre + 2) % 3], u)
 
-    def _critical_point(self) -> Weights:
-        """The critical point of F in the triangle, by Newton's method from where it was found."""
-        controls, out = np.zeros((6, 2)), np.zeros(3)
-        gradient_controls(self._coefficients, controls)
-        rows = controls[[0, 3, 4, 1, 5, 2]]  # 200 110 101 020 011 002
-        x, y = self.chart.diagram.leaves.points[self.chart.row].tolist()
-        for _ in range(20):
-            weights = 1.0 - x - y, x, y
-            value_and_gradient(self._coefficients, x, y, out)
-            to_x = 2 * sum(w * (rows[b] - rows[a]) for w, (a, b) in
-                           zip(weights, ((0, 1), (1, 3), (2, 4)), strict=True))
-            to_y = 2 * sum(w * (rows[b] - rows[a]) for w, (a, b) in
-                           zip(weights, ((0, 2), (1, 4), (2, 5)), strict=True))
-            det = to_x[0] * to_y[1] - to_x[1] * to_y[0]
-            dx = (out[1] * to_y[1] - out[2] * to_y[0]) / det
-            dy = (out[2] * to_x[0] - out[1] * to_x[1]) / det
-            x, y = x - dx, y - dy
-            if abs(dx) + abs(dy) < 1e-15:
+
+@dataclass(frozen=True)
+class Stretch:
+    """A part of the curve in an easy triangle, between two points in the triangle's weights."""
+
+    triangle: Triangle
+    ends: tuple[Weights, Weights]
+
+    def at(self, r: float) -> Weights:
+        """The point at r ∈ [0, 1], in the weights of the leaf."""
+        if r <= 0.0 or r >= 1.0:
+            return self.triangle.to_leaf(self.ends[r >= 1.0])
+        p, q = self._across(r)
+        b = _along(self.triangle.cubic, p, q)
+        signs = [c > 0 for c in b if c != 0]
+        if signs and signs[0] != signs[-1]:
+            t = single_zero(b, signs[0])
+        else:  # rounding leaves no change of sign: take the end where F is nearest to zero
+            t = 0.0 if b[0] != 0 and abs(b[0]) < abs(b[3]) else 1.0
+        return self.triangle.to_leaf(combination(p, q, t))
+
+    def reversed(self) -> Stretch:
+        """The same part, the other way round."""
+        return replace(self, ends=self.ends[::-1])
+
+    def _across(self, r: float) -> Segment:
+        if self.triangle.centre is None:
+            x, d = combination(*self.ends, r), self.triangle.increase
+            back = [-a / b for a, b in zip(x, d, strict=True) if b > 0]
+            on = [-a / b for a, b in zip(x, d, strict=True) if b < 0]
+            return _moved(x, d, max(back)), _moved(x, d, min(on))
+        k, centre = self.triangle.centre, CORNERS[self.triangle.centre]
+        if centre not in self.ends:
+            u = self.triangle.coordinate(combination(*self.ends, r))
+            return centre, self.triangle.far_point(u)
+        outwards = self.ends[0] == centre
+        other = self.ends[1 if outwards else 0]
+        t = (r if outwards else 1.0 - r) * (1.0 - other[k])
+        rays = self.triangle.heading(), self.triangle.coordinate(other)
+        p, q = (self.triangle.far_point(u) for u in rays)
+        return combination(centre, p, t), combination(centre, q, t)
+
+
+def easy_triangles(cubic: list[float]) -> Iterator[Triangle]:
+    """Triangles, all of them easy, that cover the curve in the leaf.
+
+    Raises ArithmeticError if the curve cannot be resolved in doubles.
+    """
+    waiting = [(Triangle(CORNERS, cubic), 0)]
+    while waiting:
+        triangle, depth = waiting.pop()
+        b = triangle.cubic
+        if all(c >= 0 for c in b) or all(c <= 0 for c in b):
+            continue
+        easy = _as_easy(triangle)
+        if easy is not None:
+            yield easy
+        elif depth == _DEEPEST:
+            raise ArithmeticError("a curve that doubles cannot resolve")
+        else:
+            waiting += [(half, depth + 1) for half in _halves(triangle, depth)]
+
+
+def _as_easy(triangle: Triangle) -> Triangle | None:
+    controls = np.zeros((6, 2))
+    if has_cone(np.array(triangle.cubic), 0.0, controls):
+        gx, gy = controls.sum(axis=0).tolist()
+        return replace(triangle, increase=(-gx - gy, gx, gy))
+    for k in range(3):
+        if _is_double(triangle, k):
+            near = [triangle.cubic[c] for c in _NEAR[k]]
+            far = [triangle.cubic[c] for c in SIDES[k]]
+            return replace(triangle, centre=k) if max(map(_changes, (near, far))) <= 1 else None
+    return None
+
+
+def _is_double(triangle: Triangle, corner: int) -> bool:
+    return all(triangle.cubic[c] == 0 for c in STEPS[corner])
+
+
+def _changes(b: list[float]) -> int:
+    signs = [c > 0 for c in b if c != 0]
+    return sum(x != y for x, y in pairwise(signs))
+
+
+def _halves(triangle: Triangle, depth: int) -> list[Triangle]:
+    """Both parts of a triangle cut across its longest side, or from a double zero every other time."""
+    corners = triangle.corners
+    lengths = [
+        sum((x - y) ** 2 for x, y in zip(corners[k - 2], corners[k - 1], strict=True))
+        for k in range(3)
+    ]
+    k = lengths.index(max(lengths))
+    double = [corner for corner in range(3) if _is_double(triangle, corner)]
+    if double and depth % 2:
+        k = double[0]
+    middle = combination(CORNERS[(k + 1) % 3], CORNERS[(k + 2) % 3], _CUT)
+    result = []
+    for replaced in ((k + 1) % 3, (k + 2) % 3):
+        part = [middle if c == replaced else CORNERS[c] for c in range(3)]
+        result.append(
+            Triangle(
+                (triangle.to_leaf(part[0]), triangle.to_leaf(part[1]), triangle.to_leaf(part[2])),
+                [_blossom(triangle.cubic, *(part[c] for c in index)) for index in _INDICES],
+            )
+        )
+    return result
+
+
+def stretches(triangle: Triangle) -> list[Stretch]:
+    """The curve in an easy triangle: its ends on the boundary, sorted, in pairs."""
+    ends: list[Weights] = []
+    for k in range(3):
+        side = [triangle.cubic[c] for c in SIDES[(k + 2) % 3]]
+        start, end = CORNERS[k], CORNERS[(k + 1) % 3]
+        ends += [combination(start, end, t) for t in zeros_inside(side)]
+        before = [triangle.cubic[c] for c in SIDES[(k + 1) % 3]][::-1]
+        if triangle.centre != k and side[0] == 0 and _germ(before) * _germ(side) < 0:
+            ends.append(start)
+    if len(ends) % 2 and triangle.centre is not None:
+        ends.append(CORNERS[triangle.centre])
+    ends.sort(key=triangle.coordinate)
+    if len(ends) % 2:
+        raise ArithmeticError("a curve that doubles cannot resolve")
+    return [Stretch(triangle, (p, q)) for p, q in zip(ends[::2], ends[1::2], strict=True)]
+
+
+def _germ(b: list[float]) -> float:
+    return next((c for c in b if c != 0), 0.0)
+
+
+def stretches_between(cubic: list[float], start: Weights, end: Weights) -> list[Stretch]:
+    """The stretches that lead along the curve from one of its points in the leaf to another.
+
+    Raises ArithmeticError if there is no way.
+    """
+    triangles = list(easy_triangles(cubic))
+    if len(triangles) == 1 and triangles[0].corners == CORNERS:
+        return [Stretch(triangles[0], (start, end))]
+    every = [stretch for triangle in triangles for stretch in stretches(triangle)]
+    if not every:
+        raise ArithmeticError("there is no curve in the leaf")
+    first, last = _nearest(every, start), _nearest(every, end)
+    if first is last:
+        return [_cut(_cut(first, 0, start), 1, end)]
+    for away in (first, first.reversed()):
+        way = [_cut(away, 0, start)]
+        left = [stretch for stretch in every if stretch is not first]
+        while left:
+            following = _continuation(left, way[-1])
+            if following is None:
                 break
-        if not min(x, y, 1.0 - x - y) > 0.0:
-            raise ArithmeticError(f"leaf {self.chart.leaf} has no reason to be simple")
-        return 1.0 - x - y, x, y
+            k, onwards = following
+            if left.pop(k) is last:
+                return [*way, _cut(onwards, 1, end)]
+            way.append(onwards)
+    raise ArithmeticError("no way along the curve was found")
+
+
+def _cut(stretch: Stretch, which: int, point: Weights) -> Stretch:
+    """A stretch that begins (``which`` = 0) or ends (1) at a given point of it instead."""
+    local = stretch.triangle.from_leaf(point)
+    return replace(
+        stretch, ends=(local, stretch.ends[1]) if which == 0 else (stretch.ends[0], local)
+    )
+
+
+def _nearest(every: list[Stretch], point: Weights) -> Stretch:
+    """The stretch on which a point lies."""
+
+    def distance(stretch: Stretch) -> float:
+        local = stretch.triangle.from_leaf(point)
+        beyond = max(0.0, -min(local))
+        low, high = sorted(stretch.triangle.coordinate(p) for p in stretch.ends)
+        at = stretch.triangle.coordinate(local)
+        outside = max(0.0, low - at, at - high) / max(high - low, 1e-300)
+        return beyond + min(outside, 1.0)
+
+    return min(every, key=distance)
+
+
+def _continuation(left: list[Stretch], before: Stretch) -> tuple[int, Stretch] | None:
+    """Which stretch goes on where another ends, and it, directed away from there."""
+    end = before.at(1.0)
+    gaps = [
+        (_gap(stretch.at(float(which)), end), k, which)
+        for k, stretch in enumerate(left)
+        for which in (0, 1)
+    ]
+    gap, k, which = min(gaps)
+    if gap > 1e-7:
+        return None
+    return k, left[k].reversed() if which else left[k]
+
+
+def _gap(p: Weights, q: Weights) -> float:
+    return max(abs(x - y) for x, y in zip(p, q, strict=True))
 
 
 def _moved(x: Weights, d: Weights, t: float) -> Weights:
     return x[0] + t * d[0], x[1] + t * d[1], x[2] + t * d[2]
 
 
+def _sum3(s: float, p: Weights, t: float, q: Weights, u: float, r: Weights) -> Weights:
+    return (
+        s * p[0] + t * q[0] + u * r[0],
+        s * p[1] + t * q[1] + u * r[1],
+        s * p[2] + t * q[2] + u * r[2],
+    )
+
+
+# --- blossoming ----------------------------------------------------------------------------------
+
+
 def _along(b: list[float], p: Weights, q: Weights) -> list[float]:
-    """The Bernstein coefficients of a cubic on the segment pq, by blossoming."""
+    """The Bernstein coefficients of a cubic on the segment pq."""
     one, two = _step(b, p), _step(b, q)
     pp, pq, qq = _step_two(one, p), _step_two(one, q), _step_two(two, q)
     return [_dot(pp, p), _dot(pp, q), _dot(pq, q), _dot(qq, q)]
+
+
+def _blossom(b: list[float], p: Weights, q: Weights, r: Weights) -> float:
+    return _dot(_step_two(_step(b, p), q), r)
 
 
 def _step(b: list[float], p: Weights) -> list[float]:
@@ -232,6 +344,3 @@ def _step_two(c: list[float], p: Weights) -> Weights:
 
 def _dot(c: Weights, p: Weights) -> float:
     return c[0] * p[0] + c[1] * p[1] + c[2] * p[2]
-
-
-__all__ = ["LeafArc", "combination", "value_at"]

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from harness.diagram.fast.counting import FastDiagram
+from harness.diagram.fast.places import node_point
 from harness.diagram.fast.roots import INFINITY, WALL
 from harness.diagram.planar_map import Side, Wall, Walk
 from harness.diagram.work import Contradiction
@@ -26,7 +27,10 @@ class Boundary:
 
 
 def boundary_cycles(diagram: FastDiagram) -> list[Boundary]:
-    """The one cycle of a bounded domain's boundary, or of infinity."""
+    """The one cycle of a bounded domain's boundary, or of infinity.
+
+    Ports at a corner are met clockwise about it; where their cycle begins shows in the cells.
+    """
     arrays, roots = diagram.arrays, diagram.roots
     outside = {}
     for root, k in np.argwhere((arrays.opposite == WALL) | (arrays.opposite == INFINITY)).tolist():
@@ -40,7 +44,6 @@ def boundary_cycles(diagram: FastDiagram) -> list[Boundary]:
     while True:
         root, k, following = outside.pop(corner)
         port, _, piece, _ = arrays.sides[root, k].tolist()
-        # Ports at a corner come clockwise about it in a walk that has the domain to its left.
         steps.append((corner, at_corner.get(corner, [])[::-1]))
         pieces.append(piece)
         while port >= 0:
@@ -52,7 +55,33 @@ def boundary_cycles(diagram: FastDiagram) -> list[Boundary]:
             break
     if outside:
         raise Contradiction("the boundary is not one cycle")
+    for k, (corner_here, ports) in enumerate(steps):
+        if len(ports) > 1:
+            steps[k] = (corner_here, _turned(diagram, ports, pieces[k - 1], pieces[k]))
     return [Boundary(steps, pieces)]
+
+
+def _step_point(
+    diagram: FastDiagram, corner: int | None, ports: list[int]
+) -> tuple[float, float]:
+    """A step of the boundary as a double point."""
+    if corner is None:
+        return node_point(diagram, int(diagram.nodes.of_port[ports[0]]))
+    x, y = diagram.roots.corners.exact[corner]
+    return float(x), float(y)
+
+
+def _turned(diagram: FastDiagram, ports: list[int], before: int, after: int) -> list[int]:
+    """The cycle of ports at a corner, begun where the piece before it fits."""
+    cell, arrays = diagram.cell_of_slot, diagram.arrays
+    for turn in range(len(ports)):
+        order = ports[turn:] + ports[:turn]
+        first, last = int(arrays.inward[order[0]]), int(arrays.inward[order[-1]])
+        left = arrays.arcs[first >> 1, 2 + (first & 1)]
+        right = arrays.arcs[last >> 1, 3 - (last & 1)]
+        if cell[left] == cell[before] and cell[right] == cell[after]:
+            return order
+    raise Contradiction("the cells around a corner do not fit")
 
 
 class Walks:
@@ -113,7 +142,7 @@ class Walks:
             for (corner, ports), piece in zip(boundary.steps, boundary.pieces, strict=True)
             if ports or (corner is not None and self._bends(corner))
         ]
-        points = [diagram.step_point(corner, ports) for corner, ports, _ in kept]
+        points = [_step_point(diagram, corner, ports) for corner, ports, _ in kept]
         of_port = diagram.nodes.of_port
         names = [int(of_port[ports[0]]) if ports else None for _, ports, _ in kept]
         count = len(kept)
