@@ -86,23 +86,39 @@ def glued(roots: Roots, leaves: Leaves, solved: dict[int, LocalMap]) -> Arrays:
         opposite=roots.opposite(),
     )
     glue.expand(
-        kinds, choices, start, arrays.arcs, arrays.leaf_of_arc, arrays.vertices, arrays.out_first,
-        arrays.out, arrays.inward, arrays.parent,
+        kinds,
+        choices,
+        start,
+        arrays.arcs,
+        arrays.leaf_of_arc,
+        arrays.vertices,
+        arrays.out_first,
+        arrays.out,
+        arrays.inward,
+        arrays.parent,
     )
     _add_local_maps(arrays, solved, n_arcs, n_vertices, n_ends)
     wrong = glue.glue_all(
-        leaves.order, leaves.tokens, kinds, start, ports, arrays.place, arrays.owner,
-        arrays.opposite, arrays.following, np.full(used, -1, dtype=np.int64), arrays.parent,
-        arrays.mate, arrays.sides,
+        leaves.order,
+        leaves.tokens,
+        kinds,
+        start,
+        ports,
+        arrays.place,
+        arrays.owner,
+        arrays.opposite,
+        arrays.following,
+        np.full(used, -1, dtype=np.int64),
+        arrays.parent,
+        arrays.mate,
+        arrays.sides,
     )
     if wrong != -1:
         raise Contradiction(f"triangles disagree about a common side near leaf {wrong}")
     return arrays
 
 
-def _add_local_maps(
-    arrays: Arrays, solved: dict[int, LocalMap], a: int, v: int, e: int
-) -> None:
+def _add_local_maps(arrays: Arrays, solved: dict[int, LocalMap], a: int, v: int, e: int) -> None:
     """Write arcs and vertices of local maps from arc a, vertex v, vertex end e on."""
     for leaf, local in solved.items():
         s, first_arc, first_vertex = int(arrays.start[leaf]), a, v
@@ -170,8 +186,9 @@ def _heading(roots: Roots, root: int, corner: int, shape: Floats) -> float:
     for weight, other in zip(middle.tolist(), roots.triangles[root].tolist(), strict=True):
         dx, dy = (float(c) for c in exact[other])
         if weights[other]:
-            dx, dy = float(exact[other][0] - exact[corner][0]), float(
-                exact[other][1] - exact[corner][1]
+            dx, dy = (
+                float(exact[other][0] - exact[corner][0]),
+                float(exact[other][1] - exact[corner][1]),
             )
         x, y = x + weight * dx, y + weight * dy
     return float(np.arctan2(y, x))

@@ -22,6 +22,8 @@ from harness.diagram.work import Contradiction
 from harness.geometry.kernel import Kernel
 
 MOST_TRIANGLES = 10**8
+#: A root with so many candidates is cut into 2^CUTS parts.
+MANY, CUTS = 96, 5
 
 
 #: lines, lengths, classes; first tie of each corner, ties.
@@ -46,8 +48,20 @@ class Leaves:
     statistics: Ints
 
 
-def merged(parts: list[Any], orders: list[Ints]) -> Leaves:
-    """The leaves of several runs over different roots, one after the other."""
+@dataclass(frozen=True)
+class Job:
+    """Roots to subdivide, or a part of one.
+
+    ``before``: tokens of triangles around the part that come before those of the part.
+    """
+
+    roots: Ints
+    path: Ints
+    before: tuple[int, ...] = ()
+
+
+def merged(parts: list[Any], jobs: list[Job]) -> Leaves:
+    """The leaves of several jobs, one after the other."""
 
     def joined(k: int) -> Any:
         return np.concatenate([part[k] for part in parts])
@@ -57,9 +71,15 @@ def merged(parts: list[Any], orders: list[Ints]) -> Leaves:
         rows = [part[k][:-1] + end for part, end in zip(parts, ends[:-1], strict=True)]
         return np.concatenate([*rows, ends[-1:]])
 
+    tokens = [
+        piece
+        for part, job in zip(parts, jobs, strict=True)
+        for piece in (np.array(job.before, dtype=np.int8), part[0])
+    ]
+    order = [job.roots for job in jobs if not len(job.path) or not (job.path & 1).any()]
     return Leaves(
-        order=np.concatenate(orders),
-        tokens=joined(0),
+        order=np.concatenate(order),
+        tokens=np.concatenate(tokens),
         kinds=joined(1),
         choices=joined(2),
         first_slot=offsets(3),
@@ -74,43 +94,85 @@ def merged(parts: list[Any], orders: list[Ints]) -> Leaves:
 
 
 def find_leaves(
-    prepared: Prepared, roots: Roots, candidates: tuple[Ints, Ints, Ints], definite: bool,
-    sense: float, workers: int, world: World,
+    prepared: Prepared,
+    roots: Roots,
+    candidates: tuple[Ints, Ints, Ints],
+    definite: bool,
+    sense: float,
+    workers: int,
+    world: World,
 ) -> Leaves:
     """Subdivide all roots, on several threads; the result does not depend on their number."""
     coordinates, weights, incident_first, incident = roots.corners.arrays(prepared.scale)
     first, count, flat = candidates
-
     special = np.array(roots.corners.special)
 
-    def run(order: Ints) -> Any:
+    def run(job: Job) -> Any:
         return subdivide(
-            order, roots.triangles, coordinates, weights, special, incident_first, incident, first,
-            count, flat, prepared.segments, prepared.size, sense, definite, world, MOST_TRIANGLES,
+            job.roots, job.path, roots.triangles, coordinates, weights, special, incident_first,
+            incident, first, count, flat, prepared.segments, prepared.size, sense, definite, world,
+            MOST_TRIANGLES,
         )
 
-    batches = list(_batches(len(roots.triangles), count))
+    jobs = list(_jobs(coordinates, weights, roots.triangles, count))
     if workers == 1:
-        return merged([run(batch) for batch in batches], batches)
+        return merged([run(job) for job in jobs], jobs)
     with ThreadPoolExecutor(workers) as pool:
-        return merged(list(pool.map(run, batches)), batches)
+        return merged(list(pool.map(run, jobs)), jobs)
 
 
-def _batches(roots: int, count: Ints) -> Iterator[Ints]:
-    """Consecutive roots, in batches of about the same number of candidates; none depends on the
-    number of workers."""
-    total = max(int(count.sum()) // 64, 64)
-    start = used = 0
-    for root in range(roots):
-        used += int(count[root])
-        if used >= total or root == roots - 1:
-            yield np.arange(start, root + 1)
-            start, used = root + 1, 0
+def _jobs(coordinates: Floats, weights: Floats, triangles: Ints, count: Ints) -> Iterator[Job]:
+    """Jobs in the order of the roots, which do not depend on the number of workers.
+
+    A root with many candidates is cut into 2^``CUTS`` parts, others are taken together until they
+    have about 1/64 of all candidates.
+    """
+    enough = max(int(count.sum()) // 64, 64)
+    waiting: list[int] = []
+    used = 0
+    for root, candidates in enumerate(count.tolist()):
+        corners = triangles[root]
+        if candidates >= MANY and bool(weights[corners].all()):
+            if waiting:
+                yield Job(np.array(waiting), np.zeros(0, dtype=np.int64))
+                waiting, used = [], 0
+            yield from _parts(root, coordinates[corners][:, [0, 2]])
+            continue
+        waiting.append(root)
+        used += candidates
+        if used >= enough:
+            yield Job(np.array(waiting), np.zeros(0, dtype=np.int64))
+            waiting, used = [], 0
+    if waiting:
+        yield Job(np.array(waiting), np.zeros(0, dtype=np.int64))
+
+
+def _parts(root: int, points: Floats) -> Iterator[Job]:
+    """One root in parts, its longest sides halved again and again."""
+    todo: list[tuple[tuple[int, ...], Floats]] = [((), points)]
+    before: list[int] = []
+    while todo:
+        path, (a, b, c) = todo.pop()
+        if len(path) == CUTS:
+            yield Job(np.array([root]), np.array(path, dtype=np.int64), tuple(before))
+            before = []
+            continue
+        k = int(np.argmax([np.hypot(*(c - b)), np.hypot(*(a - c)), np.hypot(*(b - a))]))
+        p, q, r = ((a, b, c), (b, c, a), (c, a, b))[k]
+        middle = (q + r) / 2
+        before.append(k)
+        todo.append(((*path, 2 * k + 1), np.array([p, middle, r])))
+        todo.append(((*path, 2 * k), np.array([p, q, middle])))
 
 
 def candidates_of(
-    prepared: Prepared, roots: Roots, found: Kernel | None, spans: list[tuple[int, int]],
-    sense: float, definite: bool, world: World,
+    prepared: Prepared,
+    roots: Roots,
+    found: Kernel | None,
+    spans: list[tuple[int, int]],
+    sense: float,
+    definite: bool,
+    world: World,
 ) -> tuple[Ints, Ints, Ints]:
     """Candidates of every root: first, count, and all of them."""
     n, m = prepared.instance.n, len(found.sides) if found else 0
@@ -121,12 +183,17 @@ def candidates_of(
             chain[2 * k] = [float(c * prepared.scale) for c in exact[m + k % m]]
             if k < m:
                 chain[2 * k + 1] = [float(c * prepared.scale) for c in exact[(k + 1) % m]]
-        return sift_kernel(
-            chain, m, n, prepared.segments, prepared.size, sense, world
-        )
+        return sift_kernel(chain, m, n, prepared.segments, prepared.size, sense, world)
     coordinates, weights, _, _ = roots.corners.arrays(prepared.scale)
     first, flat = sift_regions(
-        roots.regions, coordinates, weights, n, prepared.segments, prepared.size, sense, definite,
+        roots.regions,
+        coordinates,
+        weights,
+        n,
+        prepared.segments,
+        prepared.size,
+        sense,
+        definite,
         world,
     )
     region = np.where(roots.region_of < 0, len(roots.regions), roots.region_of)

@@ -89,8 +89,10 @@ class Chart:
         shape = [[rational(x) for x in line] for line in leaves.shapes[self.row].reshape(3, 3)]
         #: The corners (x, y, w), exactly.
         self.corners = [
-            tuple(sum((f * c[axis] for f, c in zip(line, of_root, strict=True)), fmpq(0))
-                  for axis in range(3))
+            tuple(
+                sum((f * c[axis] for f, c in zip(line, of_root, strict=True)), fmpq(0))
+                for axis in range(3)
+            )
             for line in shape
         ]
         self._forms: dict[int, list[Any]] = {}
@@ -150,8 +152,10 @@ class Chart:
             return _raised([x * two - y * one for x, y in zip(t[3:], s[3:], strict=True)])
         result = [
             sum(
-                (weight * (t[q] * s[line] - which * s[q] * t[line])
-                 for weight, q, line in terms), fmpq(0)) / 3
+                (weight * (t[q] * s[line] - which * s[q] * t[line]) for weight, q, line in terms),
+                fmpq(0),
+            )
+            / 3
             for terms in _PRODUCTS
         ]
         for k in range(3):
@@ -211,11 +215,7 @@ class Chart:
         product = fmpq_poly([1])
         for _, b in self._on_side(port, place.position):
             product *= _from_bernstein(b)
-        inside = [
-            root
-            for root in real_root_balls(product.numer(), bits)
-            if root > 0 and root < 1
-        ]
+        inside = [root for root in real_root_balls(product.numer(), bits) if root > 0 and root < 1]
         return inside[place.index]
 
     # -- vertices and ends of arcs --------------------------------------------------------------

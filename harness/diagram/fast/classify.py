@@ -152,7 +152,12 @@ def _quad_choice(w):
     """
     values, bounds, controls, slots, out, point = w[0], w[2], w[3], w[4], w[5], w[6]
     for x in range(4):
-        a, b, c, d = slots[x, 1], slots[(x + 1) & 3, 1], slots[(x + 2) & 3, 1], slots[(x + 3) & 3, 1]
+        a, b, c, d = (
+            slots[x, 1],
+            slots[(x + 1) & 3, 1],
+            slots[(x + 2) & 3, 1],
+            slots[(x + 3) & 3, 1],
+        )
         meet(values[a, b], values[a, c], point, out)
         px, py = point[0], point[1]
         inside = min(px, py, (1.0 - px - py) * 0.7)

@@ -18,7 +18,9 @@ from harness.geometry.kernel import Kernel
 from harness.geometry.predicates import orientation
 
 
-def kernel_roots(instance: Instance, kernel: Kernel, seed: int) -> tuple[Roots, list[tuple[int, int]]]:
+def kernel_roots(
+    instance: Instance, kernel: Kernel, seed: int
+) -> tuple[Roots, list[tuple[int, int]]]:
     """Roots of a kernel with m sides, and the *spans* of the chord triangles.
 
     The triangles 0 … m − 1 cut off the corners; triangle m + k has the span ``spans[k]``: all of
@@ -95,13 +97,14 @@ def _flat_points(instance: Instance, kernel: Kernel) -> dict[int, list[RationalP
             & (along > -1e-9 * size * length)
             & (along < length * length + 1e-9 * size * length)
         )
-        inside = [p for p in map(instance.exact_vertex, near.tolist())
-                  if _strictly_inside(kernel.corners[k], kernel.corners[(k + 1) % m], p)]
+        inside = [
+            p
+            for p in map(instance.exact_vertex, near.tolist())
+            if _strictly_inside(kernel.corners[k], kernel.corners[(k + 1) % m], p)
+        ]
         if inside:
             start = kernel.corners[k]
-            found[k] = sorted(
-                inside, key=lambda p, s=start: abs(p[0] - s[0]) + abs(p[1] - s[1])
-            )
+            found[k] = sorted(inside, key=lambda p, s=start: abs(p[0] - s[0]) + abs(p[1] - s[1]))
     return found
 
 
@@ -152,9 +155,7 @@ def free_point(corners: list[RationalPoint], seed: int) -> RationalPoint:
     x = sum((w * c[0] for w, c in zip(weights, corners, strict=True)), Fraction(0)) / sum(weights)
     y = sum((w * c[1] for w, c in zip(weights, corners, strict=True)), Fraction(0)) / sum(weights)
     rounded = (Fraction(float(x)), Fraction(float(y)))
-    inside = all(
-        orientation(corners[k - 1], corners[k], rounded) > 0 for k in range(m)
-    )
+    inside = all(orientation(corners[k - 1], corners[k], rounded) > 0 for k in range(m))
     return rounded if inside else (x, y)
 
 
@@ -196,7 +197,9 @@ def interior_roots(instance: Instance, kernel: Kernel, seed: int) -> Roots:
     wall = list(range(n))
     if kernel.has_interior:
         return fan(points, incident, wall, free_point(kernel.corners, seed), seed)
-    return refined(points, incident, clipped_ears(points), {(k, (k + 1) % n): k for k in wall}, seed)
+    return refined(
+        points, incident, clipped_ears(points), {(k, (k + 1) % n): k for k in wall}, seed
+    )
 
 
 def clipped_ears(points: list[RationalPoint]) -> list[tuple[int, int, int]]:
@@ -300,10 +303,7 @@ def _bend(
         a, b = b, a
     for _ in range(60):
         point = between(on_side, first, t)
-        if (
-            orientation(second, point, points[a]) > 0
-            and orientation(second, points[b], point) > 0
-        ):
+        if orientation(second, point, points[a]) > 0 and orientation(second, points[b], point) > 0:
             return corners.add(point)
         t /= 16
     raise Contradiction("no room for a free point beside a side")
@@ -352,9 +352,7 @@ def plane_roots(instance: Instance, seed: int) -> Roots:
     for k in range(3):
         a, b = n - 3 + k, n - 3 + (k + 1) % 3
         (low, _), (high, _) = directions[k], directions[(k + 1) % 3]
-        between_them = [
-            (d, row) for d, row in marked if turns_left(low, d) and turns_left(d, high)
-        ]
+        between_them = [(d, row) for d, row in marked if turns_left(low, d) and turns_left(d, high)]
         between_them.sort(key=cmp_to_key(lambda x, y: -1 if turns_left(x[0], y[0]) else 1))
         chain = [ends[k]]
         for direction, row in between_them:

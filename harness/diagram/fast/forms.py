@@ -207,8 +207,14 @@ def divided_by_distance(values, signs, k):
 
 
 _MIXED = np.array(
-    [[False] * 3, [False] * 3, [False] * 3, [True, True, False], [True, False, True],
-     [False, True, True]]
+    [
+        [False] * 3,
+        [False] * 3,
+        [False] * 3,
+        [True, True, False],
+        [True, False, True],
+        [False, True, True],
+    ]
 )
 
 

@@ -204,8 +204,19 @@ def _leaf_sides(s, k, place, following, previous, sides):
 
 @compiled
 def glue_tree(
-    tokens, position, kinds, leaf, first_slot, ports, place, owner, following, previous, parent,
-    mate, sides,
+    tokens,
+    position,
+    kinds,
+    leaf,
+    first_slot,
+    ports,
+    place,
+    owner,
+    following,
+    previous,
+    parent,
+    mate,
+    sides,
 ):
     """Glue everything inside one root triangle; its own sides go to ``sides`` (3, 4).
 
@@ -248,8 +259,19 @@ def glue_tree(
 
 @compiled
 def glue_all(
-    roots, tokens, kinds, first_slot, ports, place, owner, opposite, following, previous, parent,
-    mate, sides,
+    roots,
+    tokens,
+    kinds,
+    first_slot,
+    ports,
+    place,
+    owner,
+    opposite,
+    following,
+    previous,
+    parent,
+    mate,
+    sides,
 ):
     """Glue inside all roots, then the roots along their common sides.
 
@@ -259,8 +281,19 @@ def glue_all(
     position = leaf = 0
     for root in roots:
         position, leaf = glue_tree(
-            tokens, position, kinds, leaf, first_slot, ports, place, owner, following, previous,
-            parent, mate, sides[root],
+            tokens,
+            position,
+            kinds,
+            leaf,
+            first_slot,
+            ports,
+            place,
+            owner,
+            following,
+            previous,
+            parent,
+            mate,
+            sides[root],
         )
         if position < 0:
             return leaf
@@ -268,7 +301,12 @@ def glue_all(
         for k in range(3):
             other = opposite[root, k]
             if other > 3 * root + k and not _glue(
-                sides[root, k], sides[other // 3, other % 3], following, previous, owner, parent,
+                sides[root, k],
+                sides[other // 3, other % 3],
+                following,
+                previous,
+                owner,
+                parent,
                 mate,
             ):
                 return -2 - root

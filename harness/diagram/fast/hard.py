@@ -138,7 +138,9 @@ class _Reading:
         a, b, c = self.corners
         area = _cross(a, b, c)
         weights = [
-            _cross((x, y), b, c) / area, _cross(a, (x, y), c) / area, _cross(a, b, (x, y)) / area,
+            _cross((x, y), b, c) / area,
+            _cross(a, (x, y), c) / area,
+            _cross(a, b, (x, y)) / area,
         ]
         tiny = Fraction(1, 2 ** (BITS // 2))
         zero = [abs(w) < tiny for w in weights]
@@ -180,8 +182,12 @@ class _Reading:
                 vertex_of[v] = len(local.vertices)
                 segments = tuple(sorted(self.candidates[k] for k in node.segments))
                 local.vertices.append(
-                    (Node(node.kind, node.point, segments, node.degree, node.endpoint, node.place),
-                     self._leaving(v))
+                    (
+                        Node(
+                            node.kind, node.point, segments, node.degree, node.endpoint, node.place
+                        ),
+                        self._leaving(v),
+                    )
                 )
         for k, edge in enumerate(diagram.edges):
             left, right = self.slot_of_cell[edge.left], self.slot_of_cell[edge.right]

@@ -99,9 +99,7 @@ def has_two_zeros(values, bound, k):
     if not middle < -slack:
         return False
     # Once negative, the controls of the left part must stay negative, and likewise from the right.
-    return (
-        abs(ab) > slack and abc < -slack and bcd < -slack and abs(cd) > slack
-    )
+    return abs(ab) > slack and abc < -slack and bcd < -slack and abs(cd) > slack
 
 
 @compiled

@@ -77,7 +77,9 @@ def witnesses(diagram: FastDiagram) -> tuple[tuple[RationalPoint, int], ...]:
 def _middle(diagram: FastDiagram, shape: np.ndarray, root: int) -> RationalPoint:
     """The middle of a triangle, rounded to doubles if that is still inside."""
     rows = [[Fraction(x) for x in row] for row in shape.reshape(3, 3)]
-    point = exact_point(diagram.roots, root, [sum(column) / 3 for column in zip(*rows, strict=True)])
+    point = exact_point(
+        diagram.roots, root, [sum(column) / 3 for column in zip(*rows, strict=True)]
+    )
     assert point is not None
     corners = [exact_point(diagram.roots, root, row) for row in rows]
     if any(corner is None for corner in corners):
@@ -94,7 +96,10 @@ def _on_some_side(diagram: FastDiagram, cell: int) -> RationalPoint:
     slots = np.flatnonzero(diagram.cell_of_slot == cell)
     for slot in slots.tolist():
         leaf = int(np.searchsorted(arrays.start, slot, side="right")) - 1
-        if arrays.ports[leaf] and arrays.start[leaf] <= slot < arrays.start[leaf] + arrays.ports[leaf]:
+        if (
+            arrays.ports[leaf]
+            and arrays.start[leaf] <= slot < arrays.start[leaf] + arrays.ports[leaf]
+        ):
             point = point_of_piece(diagram, leaf, slot)
             if point is not None:
                 return point

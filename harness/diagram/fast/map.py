@@ -137,9 +137,7 @@ class _Parts:
             pair = sorted({int(x) for x in arrays.owner[arrays.arcs[half >> 1, 2:]]})
             kind = KINDS[nodes.kind[k]]
             place = None if kind == "infinity" else _Later(diagram, k)
-            result.append(
-                Node(kind, node_point(diagram, k), tuple(pair), 1, False, place)
-            )
+            result.append(Node(kind, node_point(diagram, k), tuple(pair), 1, False, place))
         return tuple(result)
 
     def edges(self) -> tuple[Edge, ...]:
@@ -227,4 +225,3 @@ class _Later:
         place = place_of(self._diagram, self._node)
         assert place is not None
         return place.enclosure(bits)
-

@@ -89,8 +89,12 @@ def pieces_are_joined(piece, w):
     m[0], m[1] = 0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])
     sign = 1.0 if positive else -1.0
     for value in (
-        polar(values, p, p, p), polar(values, p, p, m), polar(values, p, m, m),
-        polar(values, m, m, m), polar(values, m, m, q), polar(values, m, q, q),
+        polar(values, p, p, p),
+        polar(values, p, p, m),
+        polar(values, p, m, m),
+        polar(values, m, m, m),
+        polar(values, m, m, q),
+        polar(values, m, q, q),
         polar(values, q, q, q),
     ):
         if not sign * value > 2.0 * bound:
@@ -161,5 +165,3 @@ def _gradient_and_hessian(values, hx, hy, x, y, out):
     jyx = z * hy[0, 0] + x * hy[1, 0] + y * hy[2, 0]
     jyy = z * hy[0, 1] + x * hy[1, 1] + y * hy[2, 1]
     return out[1], out[2], jxx, jxy, jyx, jyy
-
-

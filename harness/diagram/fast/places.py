@@ -229,5 +229,3 @@ def _box(chart: Chart, weights: list[Any]) -> tuple[RationalPoint, RationalPoint
 
 def _bound(value: arb) -> Fraction:
     return fraction(value.fmpq())
-
-

@@ -61,9 +61,17 @@ def all_pairs(tables, start, m, sides, norms, factor, far, world, spots, ids, w)
         for b in range(a + 1, m):
             i, j = ids[start + a], ids[start + b]
             if lines[i] >= 0 and lines[i] == lines[j]:
-                bound = factor * (norms[start + a, 1] * lengths[j] + norms[start + b, 1] * lengths[i])
+                bound = factor * (
+                    norms[start + a, 1] * lengths[j] + norms[start + b, 1] * lengths[i]
+                )
                 collinear_quadratic(
-                    tables, start + a, start + b, lengths[i], lengths[j], bound, values[a, b],
+                    tables,
+                    start + a,
+                    start + b,
+                    lengths[i],
+                    lengths[j],
+                    bound,
+                    values[a, b],
                     signs[a, b],
                 )
             else:
@@ -73,8 +81,16 @@ def all_pairs(tables, start, m, sides, norms, factor, far, world, spots, ids, w)
                 )
                 known = relation(i, j, classes, tie_first, ties, spots)
                 cubic(
-                    tables, start + a, start + b, sides[a], sides[b], bound, far, known,
-                    values[a, b], signs[a, b],
+                    tables,
+                    start + a,
+                    start + b,
+                    sides[a],
+                    sides[b],
+                    bound,
+                    far,
+                    known,
+                    values[a, b],
+                    signs[a, b],
                 )
                 if known & 1 and _vanishes_far(signs[a, b], far):
                     near = 0 if far == 6 else (1 if far == 5 else 2)
@@ -190,7 +206,10 @@ def _side_pieces(m, k, u, v, w):
     for y in range(m):
         if y in (u, v, x) or _never_loses(signs[u, y], k) or _never_loses(signs[v, y], k):
             continue
-        if _loses_at(values, bounds, u, y, k, t) == 1 and _loses_at(values, bounds, v, y, k, t) == 1:
+        if (
+            _loses_at(values, bounds, u, y, k, t) == 1
+            and _loses_at(values, bounds, v, y, k, t) == 1
+        ):
             continue
         if sign_changes(signs[x, y], values[x, y], bounds[x, y], k) < 0:
             return -2
@@ -240,5 +259,3 @@ def trace_sides(m, w):
     if count == 0:
         slots[0, 0], slots[0, 1] = 1, start
     return count
-
-

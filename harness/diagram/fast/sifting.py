@@ -16,7 +16,12 @@ def new_work(n):
     return (
         np.empty((n, 9)),
         np.empty((n, 5)),
-        (np.zeros(4, np.int64), np.zeros(n, np.int64), np.zeros(n, np.int64), np.zeros(n, np.int64)),
+        (
+            np.zeros(4, np.int64),
+            np.zeros(n, np.int64),
+            np.zeros(n, np.int64),
+            np.zeros(n, np.int64),
+        ),
         np.full(3, -1),
     )
 
@@ -27,16 +32,12 @@ def sift(ids, m, corners, weights, far, segments, size, sense, definite, world, 
     tables, norms, work, spots = w
     for a in range(m):
         root_table(segments[ids[a]], corners, weights, 0, 0, size, sense, tables[a], norms[a, 0:2])
-    kept, _ = prune(
-        tables, norms, ids, 0, m, error_factor(0), far, definite, work, world, spots
-    )
+    kept, _ = prune(tables, norms, ids, 0, m, error_factor(0), far, definite, work, world, spots)
     return kept
 
 
 @compiled
-def sift_regions(
-    regions, corners, weights, n, segments, size, sense, definite, world
-):
+def sift_regions(regions, corners, weights, n, segments, size, sense, definite, world):
     """Candidates of each region (triangles of corners), in CSR form; the last region is the whole."""
     first = np.zeros(len(regions) + 2, np.int64)
     flat = np.empty(1024, np.int64)
@@ -54,9 +55,7 @@ def sift_regions(
                 ones[k] = weights[regions[r, k]]
                 if ones[k] == 0.0:
                     far |= 1 << k
-            kept = sift(
-                ids, n, three, ones, far, segments, size, sense, definite, world, w
-            )
+            kept = sift(ids, n, three, ones, far, segments, size, sense, definite, world, w)
         flat = grown(flat, first[r] + kept)
         flat[first[r] : first[r] + kept] = ids[:kept]
         first[r + 1] = first[r] + kept
@@ -80,7 +79,12 @@ def _box(points, low, high, size, corners):
         least_s, most_s = min(least_s, s), max(most_s, s)
         least_t, most_t = min(least_t, t), max(most_t, t)
     slack = 1e-6 * max(most_s - least_s, most_t - least_t) + 1e-12 * size
-    least_s, most_s, least_t, most_t = least_s - slack, most_s + slack, least_t - slack, most_t + slack
+    least_s, most_s, least_t, most_t = (
+        least_s - slack,
+        most_s + slack,
+        least_t - slack,
+        most_t + slack,
+    )
     for k in range(4):
         s = least_s if k in (0, 3) else most_s
         t = least_t if k < 2 else most_t
@@ -132,9 +136,7 @@ def sift_kernel(chain, m, n, segments, size, sense, world):
         low, high, first, count = stack[top]
         _box(chain, 2 * low, 2 * high, size, box)
         ids[:count] = flat[first : first + count]
-        kept = _sift_box(
-            ids, count, box, three, ones, segments, size, sense, world, w
-        )
+        kept = _sift_box(ids, count, box, three, ones, segments, size, sense, world, w)
         flat = grown(flat, used + kept)
         flat[used : used + kept] = ids[:kept]
         first, count = used, kept
@@ -160,9 +162,7 @@ def _sift_box(ids, m, box, three, ones, segments, size, sense, world, w):
     both = np.empty(m, np.int64)
     both[:] = ids[:m]
     three[0], three[1], three[2] = box[0], box[1], box[2]
-    one = sift(
-        ids, m, three, ones, 0, segments, size, sense, True, world, w
-    )
+    one = sift(ids, m, three, ones, 0, segments, size, sense, True, world, w)
     three[0], three[1], three[2] = box[0], box[2], box[3]
     two = sift(both, m, three, ones, 0, segments, size, sense, True, world, w)
     merged = np.empty(one + two, np.int64)

@@ -186,9 +186,7 @@ def prune(tables, norms, ids, start, m, factor, far, definite, work, world, spot
             if p == a or beaten[p]:
                 continue
             tests += 1
-            if _tested(
-                tables, norms, ids, start, p, a, lsign, qsign, factor, far, world, spots
-            ):
+            if _tested(tables, norms, ids, start, p, a, lsign, qsign, factor, far, world, spots):
                 beaten[a] = 1
                 break
     kept = keep(tables, norms, ids, start, m, lsign, qsign, beaten)
@@ -228,19 +226,23 @@ def _tested(tables, norms, ids, start, p, a, lsign, qsign, factor, far, world, s
         norms[start + p, 1] * norms[start + a, 0] + norms[start + a, 1] * norms[start + p, 0]
     )
     known = relation(i, j, classes, tie_first, ties, spots)
-    return beats(tables, start + p, start + a, lsign[p], lsign[a], qsign[p], qsign[a], bound, far, known)
+    return beats(
+        tables, start + p, start + a, lsign[p], lsign[a], qsign[p], qsign[a], bound, far, known
+    )
 
 
 @compiled
-def _prune_pairs(
-    tables, norms, ids, start, m, lsign, qsign, beaten, factor, far, world, spots
-):
+def _prune_pairs(tables, norms, ids, start, m, lsign, qsign, beaten, factor, far, world, spots):
     for a in range(m):
         beaten[a] = 0
     for a in range(m):
         for p in range(m):
-            if p != a and not beaten[p] and _tested(
-                tables, norms, ids, start, p, a, lsign, qsign, factor, far, world, spots
+            if (
+                p != a
+                and not beaten[p]
+                and _tested(
+                    tables, norms, ids, start, p, a, lsign, qsign, factor, far, world, spots
+                )
             ):
                 beaten[a] = 1
                 break
@@ -319,10 +321,28 @@ def side_to_halve(tables, start, m, depth, lsign):
 
 @compiled
 def subdivide(
-    order, triangles, corners_dd, weights, special, incident_first, incident, candidate_first, candidate_count,
-    candidates, segments, size, sense, definite, world, most,
+    order,
+    path,
+    triangles,
+    corners_dd,
+    weights,
+    special,
+    incident_first,
+    incident,
+    candidate_first,
+    candidate_count,
+    candidates,
+    segments,
+    size,
+    sense,
+    definite,
+    world,
+    most,
 ):
-    """Subdivide the root triangles numbered in ``order``.
+    """Subdivide the root triangles numbered in ``order``, or one part of each.
+
+    ``path``: halvings that lead to that part, as 2·k for the first and 2·k + 1 for the second half
+    when the side opposite to corner k is halved.
 
     ``triangles`` (r, 3): corners, counter-clockwise.  ``corners_dd`` (c, 4), ``weights`` (c,): see
     :func:`harness.diagram.fast.tables.root_table`.  ``special`` (c,): whether a corner is.  ``incident`` (CSR): the segments whose line
@@ -392,7 +412,14 @@ def subdivide(
                         if incident[z] & 1:
                             ends |= 1 << k
             root_table(
-                segments[ids[a]], root_corners, root_weights, zeros, ends, size, sense, tables[a],
+                segments[ids[a]],
+                root_corners,
+                root_weights,
+                zeros,
+                ends,
+                size,
+                sense,
+                tables[a],
                 norms[a, 2:4],
             )
             norms[a, 4] = zeros + 8 * ends
@@ -402,6 +429,26 @@ def subdivide(
         for k in range(3):
             corners[0, 4 * k] = 1.0
         before = statistics[0]
+        for step in path:
+            k, q, r = step >> 1, ((step >> 1) + 1) % 3, ((step >> 1) + 2) % 3
+            for a in range(m):
+                halve(tables, a, k, widest)
+                if step & 1 == 0:
+                    for c in range(9):
+                        tables[a, c] = tables[widest, c]
+            e[:] = exponents[0]
+            lam[:] = corners[0]
+            finer = max(e[q], e[r]) + 1
+            p, near, far_end = 3 * k, 3 * q, 3 * r
+            for c in range(3):
+                middle = 0.5 * (lam[near + c] + lam[far_end + c])
+                corners[0, c] = lam[p + c]
+                corners[0, 3 + c] = middle if step & 1 else lam[near + c]
+                corners[0, 6 + c] = lam[far_end + c] if step & 1 else middle
+            exponents[0, 0] = e[k]
+            exponents[0, 1] = finer if step & 1 else e[q]
+            exponents[0, 2] = e[r] if step & 1 else finer
+        frames[0, 2] = len(path)
         top = 1
         while top > 0:
             top -= 1
@@ -462,18 +509,31 @@ def subdivide(
                 elif m == 2 and qsign[0] != 0 and qsign[0] == qsign[1]:
                     i, j = ids[start], ids[start + 1]
                     bound = factor * (
-                        norms[start, 1] * norms[start + 1, 0] + norms[start + 1, 1] * norms[start, 0]
+                        norms[start, 1] * norms[start + 1, 0]
+                        + norms[start + 1, 1] * norms[start, 0]
                     )
                     known = relation(i, j, classes, tie_first, ties, spots)
                     kind, ports, choice = classify_mixed(
-                        tables, start, start + 1, lsign[0], lsign[1], qsign[0], bound, far,
-                        known, scratch,
+                        tables,
+                        start,
+                        start + 1,
+                        lsign[0],
+                        lsign[1],
+                        qsign[0],
+                        bound,
+                        far,
+                        known,
+                        scratch,
                     )
             k = side_to_halve(tables, start, m, depth, lsign) if kind == FAILED else 0
             if kind == FAILED:
                 q, r = (k + 1) % 3, (k + 2) % 3
                 finer = max(e[q], e[r]) + 1
-                if finer > FINEST or (patience > PATIENCE and m <= 12) or statistics[0] - before > most:
+                if (
+                    finer > FINEST
+                    or (patience > PATIENCE and m <= 12)
+                    or statistics[0] - before > most
+                ):
                     kind = HARD
             tokens = grown(tokens, n_tokens + 1)
             if kind == FAILED:

@@ -61,9 +61,7 @@ def boundary_cycles(diagram: FastDiagram) -> list[Boundary]:
     return [Boundary(steps, pieces)]
 
 
-def _step_point(
-    diagram: FastDiagram, corner: int | None, ports: list[int]
-) -> tuple[float, float]:
+def _step_point(diagram: FastDiagram, corner: int | None, ports: list[int]) -> tuple[float, float]:
     """A step of the boundary as a double point."""
     if corner is None:
         return node_point(diagram, int(diagram.nodes.of_port[ports[0]]))
@@ -151,7 +149,8 @@ class Walks:
             wall = Side(k, True, is_wall=True)
             self.walls.append(
                 Wall(
-                    (points[k], points[there]), (names[k], names[there]),
+                    (points[k], points[there]),
+                    (names[k], names[there]),
                     int(diagram.cell_of_slot[piece]),
                 )
             )
