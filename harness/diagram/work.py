@@ -9,6 +9,10 @@ class Contradiction(ArithmeticError):
     """Free points were not free enough, or a part of the fast builder is wrong."""
 
 
+class Hopeless(Contradiction):
+    """The instance is so degenerate that other free points would not help."""
+
+
 @dataclass(frozen=True)
 class Work:
     """The work behind one diagram.

@@ -19,6 +19,7 @@ from harness.diagram.fast.counting import FastDiagram
 from harness.diagram.fast.forms import SIDES, STEPS, value_and_gradient
 from harness.diagram.fast.leaves import CROSSING, EMPTY, QUAD
 from harness.diagram.fast.prepare import Floats, Ints
+from harness.diagram.fast.univariate import from_bernstein, zeros_inside
 from harness.diagram.roots import real_root_balls
 from harness.geometry.exact import fraction, point, rational, sign
 
@@ -49,7 +50,10 @@ _rows: WeakKeyDictionary[FastDiagram, Ints] = WeakKeyDictionary()
 
 
 def row_of_leaf(diagram: FastDiagram, leaf: int) -> int:
-    """The row of a leaf that is not empty in ``leaves.shapes``; the table is made once, O(leaves)."""
+    """The row in ``leaves.shapes`` of a leaf that is not empty.
+
+    O(1), after a table has been made in O(leaves).
+    """
     if diagram not in _rows:
         _rows[diagram] = np.cumsum(diagram.leaves.kinds != EMPTY) - 1
     return int(_rows[diagram][leaf])
@@ -61,14 +65,14 @@ def rounded(value: Any) -> float:
 
 
 class PortOnSide(NamedTuple):
-    """A port inside a side of its leaf: the ``index``-th of all zeros of a pair's curves there.
+    """A port inside a side of its leaf: the ``rank``-th of all zeros of a pair's curves there.
 
     ``position``: the corner from which the side starts.  ``along``: the parameter, as a double.
     ``sign``: the curve F^± (0 if the segments share a line) that passes through it.
     """
 
     position: int
-    index: int
+    rank: int
     along: float
     sign: int
 
@@ -132,8 +136,11 @@ class Chart:
         return signs.pop() if len(signs) == 1 else 0
 
     def signs(self, i: int, j: int) -> tuple[int, ...]:
-        """The curves F^± on which the visual angles of two segments can be equal; (0,) if both are
-        on one line, where F is replaced by the difference of Q_i/|b_i − a_i| and Q_j/|b_j − a_j|."""
+        """The curves F^± on which the visual angles of two segments can be equal.
+
+        (0,) if both are on one line: there F is the difference of Q_i/|b_i − a_i| and
+        Q_j/|b_j − a_j|.
+        """
         lines = self.diagram.prepared.lines
         if lines[i] >= 0 and lines[i] == lines[j]:
             return (0,)
@@ -214,9 +221,9 @@ class Chart:
         place = self.port_on_side(port)
         product = fmpq_poly([1])
         for _, b in self._on_side(port, place.position):
-            product *= _from_bernstein(b)
+            product *= from_bernstein(b)
         inside = [root for root in real_root_balls(product.numer(), bits) if root > 0 and root < 1]
-        return inside[place.index]
+        return inside[place.rank]
 
     # -- vertices and ends of arcs --------------------------------------------------------------
 
@@ -281,13 +288,6 @@ def _raised(g: list[Any]) -> list[Any]:
     ]  # fmt: skip
 
 
-def _from_bernstein(b: list[Any]) -> fmpq_poly:
-    """The polynomial with four given Bernstein coefficients."""
-    return fmpq_poly(
-        [b[0], 3 * (b[1] - b[0]), 3 * (b[0] - 2 * b[1] + b[2]), b[3] - 3 * b[2] + 3 * b[1] - b[0]]
-    )
-
-
 def _newton(f: Floats, g: Floats, start: tuple[float, ...]) -> Weights | None:
     """The common zero of two cubics in the triangle to which Newton's method leads, if any."""
     x, y = start
@@ -308,56 +308,3 @@ def _newton(f: Floats, g: Floats, start: tuple[float, ...]) -> Weights | None:
             break
     z = 1.0 - x - y
     return (z, x, y) if min(x, y, z) > -1e-12 else None
-
-
-def zeros_inside(b: list[float]) -> list[float]:
-    """The zeros in (0, 1) of a polynomial in Bernstein form, increasing; zeros of even order are
-    found only by chance.
-
-    By Descartes' rule: no sign change, no zero; one, one zero; else both halves are looked at.
-    """
-    return [t for t in _zeros(b, 50) if 0.0 < t < 1.0]
-
-
-def _zeros(b: list[float], depth: int) -> list[float]:
-    signs = [c > 0 for c in b if c != 0]
-    changes = sum(x != y for x, y in zip(signs, signs[1:], strict=False))
-    if changes == 0 or depth == 0:
-        return []
-    if changes == 1:
-        return [single_zero(b, signs[0])]
-    left, right = _halves(b)
-    middle = [0.5] if left[-1] == 0 else []
-    before, after = _zeros(left, depth - 1), _zeros(right, depth - 1)
-    return [t / 2 for t in before] + middle + [(1 + t) / 2 for t in after]
-
-
-def _halves(b: list[float]) -> tuple[list[float], list[float]]:
-    left, right = [b[0]], [b[-1]]
-    while len(b) > 1:
-        b = [(x + y) / 2 for x, y in zip(b, b[1:], strict=False)]
-        left.append(b[0])
-        right.append(b[-1])
-    return left, right[::-1]
-
-
-def single_zero(b: list[float], starts_positive: bool) -> float:
-    """The only zero in (0, 1) of a polynomial in Bernstein form, by bisection."""
-    low, high = 0.0, 1.0
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        if middle in (low, high):
-            break
-        if (value_at(b, middle) > 0.0) == starts_positive:
-            low = middle
-        else:
-            high = middle
-    return 0.5 * (low + high)
-
-
-def value_at(b: list[float], t: float) -> float:
-    """A cubic (or quadratic) in Bernstein form at t."""
-    s = 1.0 - t
-    if len(b) == 3:
-        return s * s * b[0] + 2.0 * s * t * b[1] + t * t * b[2]
-    return s * s * (s * b[0] + 3.0 * t * b[1]) + t * t * (3.0 * s * b[2] + t * b[3])

@@ -25,12 +25,15 @@ from harness.diagram.fast.nodes import (
 from harness.diagram.fast.prepare import Ints, Prepared, prepare
 from harness.diagram.fast.roots import Roots
 from harness.diagram.fast.ties import Ties, tie_arrays, ties_at_corners
-from harness.diagram.work import Contradiction, Work
+from harness.diagram.work import Contradiction, Hopeless, Work
 from harness.geometry.instance import Instance
 from harness.geometry.kernel import Kernel, kernel
 
 #: How often other free points are tried.
 SEEDS = 4
+#: So many open leaves are solved by algebra, one by one, in a small and in any other instance.
+FEW_OPEN, MOST_OPEN = 60, 20_000
+SMALL = 32
 
 
 @dataclass(eq=False)
@@ -141,6 +144,8 @@ def fast_diagram(
     for seed in range(SEEDS):
         try:
             return _attempt(prepared, domain, objective, found, seed, workers)
+        except Hopeless:
+            raise
         except Contradiction as error:
             problem = error
     assert problem is not None
@@ -176,6 +181,9 @@ def _attempt(
         if new <= ties:
             break
         ties |= new
+    still_open = int(leaves.statistics[2] + leaves.statistics[3])
+    if still_open > (FEW_OPEN if prepared.instance.n <= SMALL else MOST_OPEN):
+        raise Hopeless(f"{still_open} triangles need algebra")
     solved = solve_open(prepared, roots, leaves, domain, objective)
     arrays = glued(roots, leaves, solved)
     nodes = find_nodes(prepared, roots, leaves, arrays, domain == "plane")

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from harness.diagram.fast.chart import Chart
 from harness.diagram.fast.counting import FastDiagram
 from harness.diagram.fast.leaf_arcs import LeafArc
-from harness.diagram.fast.places import local_arc, node_point
+from harness.diagram.fast.node_points import local_arc, node_point
 from harness.diagram.planar_map import Edge, Window
 
 Point = tuple[float, float]
@@ -23,7 +23,10 @@ _SAME = 1e-14
 
 
 class ArcCourse:
-    """An edge of a fast diagram: a chain of arcs, each in one leaf.  Nothing is kept between calls."""
+    """An edge of a fast diagram: a chain of arcs, each in one leaf.
+
+    Nothing is kept between calls.
+    """
 
     def __init__(self, diagram: FastDiagram, edge: int) -> None:
         """``edge``: a row of ``diagram.edges``."""
@@ -137,7 +140,7 @@ class _Horizon:
         self._radius = float(np.hypot(*(high - low))) + 8 * reach
 
     def cut(self, arc: LeafArc, end: int) -> float:
-        """The parameter at which to leave off towards an end: at the end, unless it is at infinity."""
+        """The parameter at which to leave off towards an end: the end, unless it is at infinity."""
         if not arc.is_far(end):
             return float(end)
         step = 0.25
@@ -151,9 +154,12 @@ class _Horizon:
 
 def _refined(arc: LeafArc, low: float, high: float, tolerance: float) -> Iterator[Point]:
     """The points of an arc from parameter ``low`` to ``high``."""
-    p, q = arc.point(low), arc.point(high)
-    yield p
-    waiting = [(low, p, high, q, 0)]
+    count = len(arc.stretches)
+    cuts = [low, *(k / count for k in range(1, count) if low < k / count < high), high]
+    points = [arc.point(r) for r in cuts]
+    yield points[0]
+    pieces = list(zip(cuts, points, cuts[1:], points[1:], strict=False))
+    waiting = [(*piece, 0) for piece in reversed(pieces)]
     while waiting:
         a, p, b, q, depth = waiting.pop()
         middle = (a + b) / 2

@@ -7,11 +7,12 @@ from typing import Any
 
 from flint import arb, ctx
 
-from harness.diagram.fast.arrays import Arrays
 from harness.diagram.fast.chart import Chart
 from harness.diagram.fast.counting import FastDiagram
 from harness.diagram.fast.forms import value_and_gradient
-from harness.diagram.planar_map import Node, Place, RationalPoint
+from harness.diagram.fast.leaves import CROSSING
+from harness.diagram.fast.node_points import crossing, local_node, node_point, single_port
+from harness.diagram.planar_map import Place, RationalPoint
 from harness.geometry.exact import fraction
 
 #: Working bits beyond those asked for.
@@ -31,66 +32,25 @@ def place_of(diagram: FastDiagram, node: int) -> Place | None:
         special = arrays.special.get(node)
         if special is not None:
             return special.place
-        chart = Chart(diagram, int(arrays.vertices[node, 0]))
-        return CrossingPlace(chart) if chart.is_crossing else TiePlace(chart, node)
+        leaf = int(arrays.vertices[node, 0])
+        if diagram.leaves.kinds[leaf] == CROSSING:
+            return ExactPoint(crossing(diagram, leaf))
+        return TiePlace(Chart(diagram, leaf), node)
     if node < vertices + len(diagram.nodes.corners):
         corner = diagram.nodes.corners[node - vertices].corner
         return ExactPoint(diagram.roots.corners.exact[corner])
     if diagram.domain == "plane":
         return None
-    port = int(diagram.nodes.ports[node - vertices - len(diagram.nodes.corners)])
+    port = single_port(diagram, node)
     local = local_node(diagram, port)
     return PortPlace(diagram, port) if local is None else local.place
-
-
-def node_point(diagram: FastDiagram, node: int) -> tuple[float, float]:
-    """The point of a node as doubles; at infinity, the direction as a unit vector."""
-    arrays, vertices = diagram.arrays, len(diagram.arrays.vertices)
-    if node < vertices:
-        special = arrays.special.get(node)
-        if special is not None:
-            return special.point
-        chart = Chart(diagram, int(arrays.vertices[node, 0]))
-        if chart.is_crossing:
-            low, _ = CrossingPlace(chart).enclosure(0)
-            return float(low[0]), float(low[1])
-        return chart.plane(chart.vertex(node))
-    if node < vertices + len(diagram.nodes.corners):
-        x, y = diagram.roots.corners.exact[diagram.nodes.corners[node - vertices].corner]
-        return float(x), float(y)
-    port = int(diagram.nodes.ports[node - vertices - len(diagram.nodes.corners)])
-    local = local_node(diagram, port)
-    if local is not None:
-        return local.point
-    half = int(arrays.inward[port])
-    chart = Chart(diagram, int(arrays.leaf_of_arc[half >> 1]))
-    return chart.plane(chart.end(half >> 1, half & 1))
-
-
-def local_arc(arrays: Arrays, arc: int) -> int:
-    """The number of an arc among those of its leaf, which are consecutive."""
-    first = arc
-    while first > 0 and arrays.leaf_of_arc[first - 1] == arrays.leaf_of_arc[arc]:
-        first -= 1
-    return arc - first
-
-
-def local_node(diagram: FastDiagram, port: int) -> Node | None:
-    """The node of a hard leaf's own diagram at one of its ports; None for other leaves."""
-    half = int(diagram.arrays.inward[port])
-    leaf = int(diagram.arrays.leaf_of_arc[half >> 1])
-    local = diagram.solved.get(leaf)
-    if local is None or local.diagram is None:
-        return None
-    edge = local.diagram.edges[local_arc(diagram.arrays, half >> 1)]
-    node = edge.end if half & 1 else edge.start
-    return None if node is None else local.diagram.nodes[node]
 
 
 class ExactPoint:
     """The place of a rational point."""
 
     def __init__(self, point: RationalPoint) -> None:
+        """``point``: exact."""
         self._point = point
 
     def enclosure(self, bits: int) -> tuple[RationalPoint, RationalPoint]:
@@ -98,23 +58,11 @@ class ExactPoint:
         return self._point, self._point
 
 
-class CrossingPlace:
-    """The place of the common point of two lines."""
-
-    def __init__(self, chart: Chart) -> None:
-        self._chart = chart
-
-    def enclosure(self, bits: int) -> tuple[RationalPoint, RationalPoint]:
-        """The point twice, whatever ``bits``."""
-        x, y, w = _combined(self._chart, self._chart.crossing())
-        exact = fraction(x / w), fraction(y / w)
-        return exact, exact
-
-
 class PortPlace:
     """The place of a port on the boundary of the domain."""
 
     def __init__(self, diagram: FastDiagram, port: int) -> None:
+        """``port``: inside a side of a leaf that is not hard."""
         leaf = int(diagram.arrays.leaf_of_arc[diagram.arrays.inward[port] >> 1])
         self._chart = Chart(diagram, leaf)
         self._port = port
@@ -134,6 +82,7 @@ class TiePlace:
     """The place of a vertex at which three (or four) segments tie."""
 
     def __init__(self, chart: Chart, vertex: int) -> None:
+        """``chart``: of the leaf of ``vertex``."""
         self._chart = chart
         self._vertex = vertex
         a, b, c = chart.tied_at(vertex)
@@ -229,3 +178,6 @@ def _box(chart: Chart, weights: list[Any]) -> tuple[RationalPoint, RationalPoint
 
 def _bound(value: arb) -> Fraction:
     return fraction(value.fmpq())
+
+
+__all__ = ["ExactPoint", "PortPlace", "TiePlace", "node_point", "place_of"]

@@ -429,6 +429,7 @@ def subdivide(
         for k in range(3):
             corners[0, 4 * k] = 1.0
         before = statistics[0]
+        allowed = min(most, 20_000 + 1_000 * m * m)
         for step in path:
             k, q, r = step >> 1, ((step >> 1) + 1) % 3, ((step >> 1) + 2) % 3
             for a in range(m):
@@ -532,7 +533,7 @@ def subdivide(
                 if (
                     finer > FINEST
                     or (patience > PATIENCE and m <= 12)
-                    or statistics[0] - before > most
+                    or statistics[0] - before > allowed
                 ):
                     kind = HARD
             tokens = grown(tokens, n_tokens + 1)

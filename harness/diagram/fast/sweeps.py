@@ -9,8 +9,8 @@ radial   F has a double zero at a corner C; on a ray it is s²(α + sβ) at dist
          nearly straight, and is swept across: between the ray along which it leaves C and the ray
          through its other end.
 
-Either way the curve is a graph over a coordinate, and its ends on the boundary, sorted by it, belong
-together in pairs.  Other triangles are halved.
+Either way the curve is a graph over a coordinate, and its ends on the boundary, sorted by it,
+belong together in pairs.  Other triangles are halved.
 """
 
 from __future__ import annotations
@@ -21,9 +21,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from harness.diagram.fast.chart import CORNERS, Weights, single_zero, zeros_inside
+from harness.diagram.fast.chart import CORNERS, Weights
 from harness.diagram.fast.forms import SIDES, STEPS
 from harness.diagram.fast.leaves import has_cone
+from harness.diagram.fast.univariate import single_zero, zeros_inside
 
 Segment = tuple[Weights, Weights]
 #: The coefficients of F that are of first order in the weight of a corner, in the order of the
@@ -143,7 +144,7 @@ def easy_triangles(cubic: list[float]) -> Iterator[Triangle]:
 
     Raises ArithmeticError if the curve cannot be resolved in doubles.
     """
-    waiting = [(Triangle(CORNERS, cubic), 0)]
+    waiting = [(Triangle((CORNERS[0], CORNERS[1], CORNERS[2]), cubic), 0)]
     while waiting:
         triangle, depth = waiting.pop()
         b = triangle.cubic
@@ -181,7 +182,8 @@ def _changes(b: list[float]) -> int:
 
 
 def _halves(triangle: Triangle, depth: int) -> list[Triangle]:
-    """Both parts of a triangle cut across its longest side, or from a double zero every other time."""
+    """Both parts of a triangle, cut across its longest side or, every other time, from a double
+    zero."""
     corners = triangle.corners
     lengths = [
         sum((x - y) ** 2 for x, y in zip(corners[k - 2], corners[k - 1], strict=True))
