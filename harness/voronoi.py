@@ -81,9 +81,9 @@ class AngularVoronoi:
         self.domain: Domain = self.diagram.domain
         self.objective: Objective = self.diagram.objective
         self.segments: NDArray[np.float64] = self.instance.segments
-        self.nodes: tuple[Node, ...] = self.diagram.nodes
-        self.edges: tuple[Edge, ...] = self.diagram.edges
-        self.cells: tuple[Cell, ...] = self.diagram.cells
+        self.nodes: Sequence[Node] = self.diagram.nodes
+        self.edges: Sequence[Edge] = self.diagram.edges
+        self.cells: Sequence[Cell] = self.diagram.cells
         self.counts: Counts = self.diagram.counts
         self.vertices: NDArray[np.float64] = np.array(
             [node.point for node in self.nodes if node.kind in VERTEX_KINDS]

@@ -28,13 +28,14 @@ def build(
 ) -> PlanarMap:
     """The angular Voronoi diagram of a validated instance.
 
-    ``domain`` defaults to ``kernel`` for a polygon and ``plane`` for segments.  ``workers``: threads
-    of the fast builder, by default one per processor; the map does not depend on it.
+    ``domain`` defaults to ``kernel`` for a polygon and ``plane`` for segments.  ``workers``:
+    threads of the fast builder, by default one per processor; the map does not depend on it.
 
     Raises:
         UserError: an unknown builder; an instance so degenerate that the fast builder cannot
-            certify it, and too large to be handed to the reference builder instead; a domain that does not go with the kind of instance; a
-            polygon that is not star-shaped, or whose kernel has no interior, in domain ``kernel``.
+            certify it, and too large for the reference builder; a domain that does not go with
+            the kind of instance; a polygon that is not star-shaped, or whose kernel has no
+            interior, in domain ``kernel``.
     """
     if builder not in BUILDERS:
         raise UserError(f"unknown builder {builder!r}: choose from {', '.join(BUILDERS)}")

@@ -155,8 +155,8 @@ class PlanarMap:
     ``corners``: the counter-clockwise corners of the domain as doubles, (k, 2), or None for the
     plane.  ``witnesses``: exact points with the index of the cell they lie in (−1: outside), at
     least one for every cell.  ``locator`` finds the cell of an exact point: its index, −1 outside
-    the domain, None on an edge or node.  ``tally``: the counts, from a builder that has them without
-    looking at the objects.  ``work``: what the builder did, if it keeps account.
+    the domain, None on an edge or node.  ``tally``: the counts, from a builder that has them
+    without looking at the objects.  ``work``: what the builder did, if it keeps account.
     """
 
     instance: Instance

@@ -181,7 +181,6 @@ def _heading(roots: Roots, root: int, corner: int, shape: Floats) -> float:
     """The direction from a corner to the middle of a triangle at it, as an angle."""
     middle = shape.mean(axis=0)
     exact, weights = roots.corners.exact, roots.corners.weights
-    x0, y0 = (float(c) for c in exact[corner])
     x = y = 0.0
     for weight, other in zip(middle.tolist(), roots.triangles[root].tolist(), strict=True):
         dx, dy = (float(c) for c in exact[other])

@@ -13,7 +13,7 @@ import numpy as np
 from harness.diagram.counts import Domain, Objective
 from harness.diagram.fast.hard import LocalMap, solve
 from harness.diagram.fast.leaves import EMPTY, HARD
-from harness.diagram.fast.prepare import Floats, Ints, Prepared, prepare
+from harness.diagram.fast.prepare import Floats, Ints, Prepared
 from harness.diagram.fast.roots import Roots
 from harness.diagram.fast.sifting import sift_kernel, sift_regions
 from harness.diagram.fast.subdivide import subdivide
@@ -111,8 +111,22 @@ def find_leaves(
 
     def run(job: Job) -> Any:
         return subdivide(
-            job.roots, job.path, roots.triangles, coordinates, weights, special, incident_first,
-            incident, first, count, flat, prepared.segments, prepared.size, sense, definite, world,
+            job.roots,
+            job.path,
+            roots.triangles,
+            coordinates,
+            weights,
+            special,
+            incident_first,
+            incident,
+            first,
+            count,
+            flat,
+            prepared.segments,
+            prepared.size,
+            sense,
+            definite,
+            world,
             MOST_TRIANGLES,
         )
 
@@ -185,7 +199,10 @@ def candidates_of(
             chain[2 * k] = [float(c * prepared.scale) for c in exact[m + k % m]]
             if k < m:
                 chain[2 * k + 1] = [float(c * prepared.scale) for c in exact[(k + 1) % m]]
-        return sift_kernel(chain, m, n, prepared.segments, prepared.size, sense, world)
+        sifted: tuple[Ints, Ints, Ints] = sift_kernel(
+            chain, m, n, prepared.segments, prepared.size, sense, world
+        )
+        return sifted
     coordinates, weights, _, _ = roots.corners.arrays(prepared.scale)
     first, flat = sift_regions(
         roots.regions,

@@ -40,10 +40,7 @@ def join_arcs(arcs, mate, inward, node_of_vertex, node_of_port, parent):
                 continue
             start = start_of(arcs, first)
             if loops == 0:
-                if start < 0:
-                    node = node_of_vertex[-1 - start]
-                else:
-                    node = node_of_port[start]
+                node = node_of_vertex[-1 - start] if start < 0 else node_of_port[start]
                 if node < 0:
                     continue
             else:

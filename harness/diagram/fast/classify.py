@@ -61,8 +61,8 @@ def _no_loops(m, w):
 def _ties_once(a, b, c, w):
     """Whether three candidates certainly tie in at most one point (hull)."""
     for x, y, z in ((a, b, c), (b, c, a), (c, a, b)):
-        i, j, k, l = min(x, y), max(x, y), min(x, z), max(x, z)
-        if hull_determinant(w[3][i, j], w[3][k, l], w[2][i, j], w[2][k, l]) != 0.0:
+        i, j, k, n = min(x, y), max(x, y), min(x, z), max(x, z)
+        if hull_determinant(w[3][i, j], w[3][k, n], w[2][i, j], w[2][k, n]) != 0.0:
             return True
     return False
 

@@ -22,6 +22,7 @@ from harness.diagram.fast.nodes import (
     find_nodes,
     unbounded_classes,
 )
+from harness.diagram.fast.plane import plane_roots
 from harness.diagram.fast.prepare import Ints, Prepared, prepare
 from harness.diagram.fast.roots import Roots
 from harness.diagram.fast.ties import Ties, tie_arrays, ties_at_corners
@@ -162,7 +163,7 @@ def _attempt(
 ) -> FastDiagram:
     spans: list[tuple[int, int]] = []
     if domain == "plane":
-        roots = domains.plane_roots(prepared.instance, seed)
+        roots = plane_roots(prepared.instance, seed)
     elif domain == "kernel":
         assert found is not None
         roots, spans = domains.kernel_roots(prepared.instance, found, seed)

@@ -71,8 +71,8 @@ def mean(x, y):
 def halve(tables, row, k, other):
     """The tables of both halves of a triangle whose side opposite to corner k is halved.
 
-    With corners P (number k), Q, R in counter-clockwise order and M the middle of QR: (P, Q, M) goes
-    to the row ``other``, (P, M, R) replaces the triangle's own.
+    With corners P (number k), Q, R in counter-clockwise order and M the middle of QR: (P, Q, M)
+    goes to the row ``other``, (P, M, R) replaces the triangle's own.
     """
     if k == 0:
         lp, lq, lr = tables[row, 0], tables[row, 1], tables[row, 2]
@@ -171,10 +171,10 @@ def is_structural_zero(c, tables, i, j, si, sj, far, known):
     """
     zero = True
     for r in range(3):
-        q, l = TERMS[c, r, 0], TERMS[c, r, 1]
+        q, line = TERMS[c, r, 0], TERMS[c, r, 1]
         if q >= 0 and not (
-            (tables[i, q] == 0.0 or tables[j, l] == 0.0)
-            and (tables[j, q] == 0.0 or tables[i, l] == 0.0)
+            (tables[i, q] == 0.0 or tables[j, line] == 0.0)
+            and (tables[j, q] == 0.0 or tables[i, line] == 0.0)
         ):
             zero = False
     if zero:

@@ -18,8 +18,6 @@ from harness.diagram.fast.jit import compiled
 from harness.diagram.fast.leaves import (
     ARC,
     CROSSING,
-    EMPTY,
-    HARD,
     QUAD,
     SADDLE,
     TIED,
@@ -69,7 +67,7 @@ def expand(kinds, choices, first_slot, arcs, leaf_of_arc, vertices, out_first, o
             a = _join(arcs, leaf_of_arc, inward, a, leaf, s, 4, p, p + 1)
             a = _join(arcs, leaf_of_arc, inward, a, leaf, s, 4, p + 2, (p + 3) % 4)
             unite(parent, s + 1 - p, s + 3 - p)
-        elif kind == TRIPLE or kind == CROSSING or choice == TIED:
+        elif kind in (TRIPLE, CROSSING) or choice == TIED:
             k = 3 if kind == TRIPLE else 4
             vertices[v, 0], vertices[v, 1] = leaf, 0
             for r in range(k):

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections import defaultdict
 from dataclasses import dataclass, field
 from fractions import Fraction
+from itertools import pairwise
 
 from harness.diagram.counts import Domain, Objective
 from harness.diagram.planar_map import Node, PlanarMap, RationalPoint, Side
@@ -27,8 +28,8 @@ class LocalMap:
     ``places``, ``owners``: of the ports (of the only piece, if there is none), then of cells
     without a port and of pseudo ports.  ``arcs``: (end, end, left, right); ends are ports or
     −1 − vertex.  ``vertices``: the nodes, with the half-arcs that leave them, counter-clockwise.
-    ``united``: pairs of slots of one cell.  ``diagram``: the local diagram; ``cell_slots``: a slot of
-    each of its cells.  ``mates``: pairs of pseudo ports (they close loops).
+    ``united``: pairs of slots of one cell.  ``diagram``: the local diagram; ``cell_slots``: a
+    slot of each of its cells.  ``mates``: pairs of pseudo ports (they close loops).
     """
 
     ports: int
@@ -96,7 +97,7 @@ class _Reading:
                 if node is not None and self.diagram.nodes[node].kind == "boundary":
                     ends[node].append((k, at_end))
         located = sorted((self._place(node), node) for node in ends)
-        for ((place, t), _), ((other, s), _) in zip(located, located[1:], strict=False):
+        for ((place, t), _), ((other, s), _) in pairwise(located):
             if place == other and t == s and place % 2:
                 raise Contradiction("two ports in one point")
         ports = []
@@ -198,8 +199,8 @@ class _Reading:
                 local.arcs.append((one, two, left, right))
                 continue
             ends = []
-            for node, at_end in ((edge.start, False), (edge.end, True)):
-                inner = vertex_of.get(node)
+            for end, at_end in ((edge.start, False), (edge.end, True)):
+                inner = vertex_of.get(end)
                 ends.append(self.port_of_end[k, at_end] if inner is None else -1 - inner)
             local.arcs.append((ends[0], ends[1], left, right))
 
@@ -213,7 +214,7 @@ class _Reading:
                     if not following.is_wall and _start(diagram, following) == node:
                         if side.is_wall:
                             raise Contradiction("a node inside lies on the boundary")
-                        # ``side`` arrives at the node; reversed, it leaves next after ``following``.
+                        # ``side`` arrives; reversed, it leaves next after ``following``.
                         after[_half(following)] = _half(side) ^ 1
         first = min(after)
         order = [first]

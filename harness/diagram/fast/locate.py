@@ -9,8 +9,8 @@ import numpy as np
 
 from harness.diagram.fast.chart import Chart
 from harness.diagram.fast.counting import FastDiagram
-from harness.diagram.fast.jit import compiled
 from harness.diagram.fast.hard import solve
+from harness.diagram.fast.jit import compiled
 from harness.diagram.fast.leaves import EMPTY
 from harness.diagram.fast.points import exact_point
 from harness.diagram.fast.roots import WALL

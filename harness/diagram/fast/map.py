@@ -14,7 +14,7 @@ from harness.diagram.fast.locate import FastLocator, witnesses
 from harness.diagram.fast.nodes import KINDS, owners_around, vertex_points
 from harness.diagram.fast.places import node_point, place_of
 from harness.diagram.fast.walks import Walks
-from harness.diagram.planar_map import Cell, Edge, Node, PlanarMap, RationalPoint, Wall, Walk
+from harness.diagram.planar_map import Cell, Edge, Node, PlanarMap, RationalPoint, Walk, Wall
 from harness.diagram.work import Contradiction
 from harness.geometry.instance import Instance
 
@@ -38,6 +38,7 @@ class Lazy(Sequence[T]):
         return self._made
 
     def __len__(self) -> int:
+        """Known without making anything."""
         return self._length
 
     @overload
@@ -45,9 +46,11 @@ class Lazy(Sequence[T]):
     @overload
     def __getitem__(self, index: slice) -> tuple[T, ...]: ...
     def __getitem__(self, index: Any) -> Any:
+        """As of a tuple."""
         return self._all()[index]
 
     def __iter__(self) -> Iterator[T]:
+        """As of a tuple."""
         return iter(self._all())
 
 

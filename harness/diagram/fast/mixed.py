@@ -21,13 +21,14 @@ from harness.diagram.fast.sides import SIDE_AFTER
 
 @compiled
 def classify_mixed(tables, i, j, la, lb, q, bound, far, known, w):
-    """A leaf of two candidates of which at least one has its line through T; both Q have the sign q.
+    """A leaf of two candidates, of which at least one has its line through T.
 
-    Let F± = Q_a L_b ∓ Q_b L_a.  As F₊F₋ = Q_a²L_b² − Q_b²L_a², candidate a wins where both have one
-    sign and b where they differ (if q = −1, the other way round), so the pieces are named by the two signs and every zero of F₊
-    or F₋ is an edge.  With a cone for both, each zero set is one arc; the two meet only where
-    Q_a L_b = Q_b L_a = 0: where both lines cross (angle 0), once at most and transversally.
-    So if their ports alternate there is one crossing, otherwise none.
+    Both Q have the sign q on T.  Let F± = Q_a L_b ∓ Q_b L_a.  As F₊F₋ = Q_a²L_b² − Q_b²L_a²,
+    candidate a wins where both have one sign and b where they differ (if q = −1, the other way
+    round), so the pieces are named by the two signs and every zero of F₊ or F₋ is an edge.  ``la``,
+    ``lb``: the sign of L on T, 0 where the line crosses T.  Without loops each zero set is an arc;
+    the two meet only where Q_a L_b = Q_b L_a = 0: where both lines cross (angle 0), once at most
+    and transversally.  So if their ports alternate there is one crossing, otherwise none.
     """
     values, signs, controls, slots = w[0], w[1], w[3], w[4]
     cubic(tables, i, j, 1.0, 1.0, bound, far, known, values[0, 1], signs[0, 1])

@@ -25,8 +25,8 @@ class Nodes:
     """``kind`` (m,): numbers of KINDS.  ``degree`` (m,).  Vertices of leaves come first, then
     ``corners`` (special corners), then single ports on walls and at infinity.
 
-    ``of_port`` (s,): the node of a port, or −1.  ``ports`` (p,): the single ports.  ``far``: special
-    corners at infinity; each of their ports is a node of its own.
+    ``of_port`` (s,): the node of a port, or −1.  ``ports`` (p,): the single ports.  ``far``:
+    special corners at infinity; each of their ports is a node of its own.
     """
 
     kind: Ints
@@ -121,7 +121,8 @@ def root_points(roots: Roots, root: Ints, weights: Floats) -> Floats:
     corners = roots.triangles[root]
     summed = np.einsum("vc,vcd->vd", weights, exact[corners])
     w = (weights * corner_weights[corners]).sum(axis=1)
-    return summed / np.where(w == 0, 1, w)[:, None]
+    points: Floats = summed / np.where(w == 0, 1, w)[:, None]
+    return points
 
 
 def unbounded_classes(arrays: Arrays) -> set[int]:

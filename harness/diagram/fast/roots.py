@@ -7,8 +7,8 @@ something is known to happen: a segment's endpoint, a corner of the domain.  At 
 forms that vanish are known by construction (``incident``).  (A free point that is not free enough
 shows as a contradiction and is replaced, with all others, by the next choice.)
 
-kernel    its corners c_k are special; on every side a free point g_k.  Triangles (g_{k−1}, c_k, g_k),
-          and halving chords of the polygon of the g_k.
+kernel    its corners c_k are special; on every side a free point g_k.  Triangles
+          (g_{k−1}, c_k, g_k), and halving chords of the polygon of the g_k.
 interior  of a star-shaped polygon: a fan about a free point of the kernel; of others: a
           triangulation, refined as in the plane.
 plane     a Delaunay triangulation of all endpoints and a large free triangle about them; in every
@@ -25,8 +25,8 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from harness.diagram.work import Contradiction
 from harness.diagram.planar_map import RationalPoint
+from harness.diagram.work import Contradiction
 
 Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]
@@ -128,3 +128,10 @@ def free_number(k: int, seed: int) -> Fraction:
 def between(a: RationalPoint, b: RationalPoint, t: Fraction) -> RationalPoint:
     """The point a + t(b − a)."""
     return a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])
+
+
+def free_wall_point(corners: Corners, a: int, b: int, number: int, seed: int) -> int:
+    """A free point between two corners on the boundary, on the lines that both are on."""
+    lines = {z >> 1 for z in corners.incident[a]} & {z >> 1 for z in corners.incident[b]}
+    point = between(corners.exact[a], corners.exact[b], free_number(number, seed))
+    return corners.add(point, [2 * k for k in sorted(lines)])

@@ -6,7 +6,8 @@ import numpy as np
 
 from harness.diagram.fast.forms import error_factor
 from harness.diagram.fast.jit import compiled
-from harness.diagram.fast.subdivide import grown, prune
+from harness.diagram.fast.prune import prune
+from harness.diagram.fast.subdivide import grown
 from harness.diagram.fast.tables import root_table
 
 
@@ -38,7 +39,7 @@ def sift(ids, m, corners, weights, far, segments, size, sense, definite, world, 
 
 @compiled
 def sift_regions(regions, corners, weights, n, segments, size, sense, definite, world):
-    """Candidates of each region (triangles of corners), in CSR form; the last region is the whole."""
+    """Candidates of each region (triangles of corners), in CSR form; the last is the whole."""
     first = np.zeros(len(regions) + 2, np.int64)
     flat = np.empty(1024, np.int64)
     ids = np.empty(n, np.int64)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
 from harness.diagram.fast.counting import FastDiagram
 from harness.diagram.fast.places import node_point
 from harness.diagram.fast.roots import INFINITY, WALL
-from harness.diagram.planar_map import Side, Wall, Walk
+from harness.diagram.planar_map import Side, Walk, Wall
 from harness.diagram.work import Contradiction
 
 
@@ -156,7 +157,7 @@ class Walks:
             )
             inwards = [self.leaving(int(diagram.arrays.inward[p])) for p in ports]
             # Outwards along a port, then inwards along the next one, and last along the wall.
-            for half, following in zip(inwards, inwards[1:], strict=False):
+            for half, following in pairwise(inwards):
                 self.before[half] = _side(following)
             if inwards:
                 self.before[inwards[-1]] = wall

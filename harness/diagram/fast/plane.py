@@ -1,0 +1,227 @@
+"""Root triangles from a triangulation of endpoints: of the plane, and of any polygon."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from fractions import Fraction
+from functools import cmp_to_key
+from itertools import pairwise
+
+import numpy as np
+
+from harness.diagram.fast.roots import Corners, Roots, between, free_number, free_wall_point
+from harness.diagram.planar_map import RationalPoint
+from harness.diagram.work import Contradiction
+from harness.geometry.instance import Instance
+from harness.geometry.predicates import orientation
+
+
+def clipped_ears(points: list[RationalPoint]) -> list[tuple[int, int, int]]:
+    """A triangulation of a simple polygon by its vertices: O(n²) to O(n³), for few vertices."""
+    left = list(range(len(points)))
+    triangles = []
+    while len(left) > 3:
+        for at in range(len(left)):
+            a, b, c = left[at - 1], left[at], left[(at + 1) % len(left)]
+            pa, pb, pc = points[a], points[b], points[c]
+            if orientation(pa, pb, pc) > 0 and not any(
+                _in_triangle(points[p], pa, pb, pc) for p in left if p not in (a, b, c)
+            ):
+                triangles.append((a, b, c))
+                del left[at]
+                break
+        else:
+            # Only flat corners are left between others: they cannot be cut off as triangles.
+            raise Contradiction("the polygon has no ear")
+    triangles.append((left[0], left[1], left[2]))
+    return triangles
+
+
+def _in_triangle(p: RationalPoint, a: RationalPoint, b: RationalPoint, c: RationalPoint) -> bool:
+    """Whether p lies in a closed counter-clockwise triangle."""
+    return orientation(a, b, p) >= 0 and orientation(b, c, p) >= 0 and orientation(c, a, p) >= 0
+
+
+def refined(
+    points: list[RationalPoint],
+    incident: list[list[int]],
+    triangles: list[tuple[int, int, int]],
+    walls: dict[tuple[int, int], int],
+    seed: int,
+) -> Roots:
+    """A triangulation in which no two of the given points (but along walls) are neighbours.
+
+    Every triangle gets a free point, every side that is no wall a free point close to it, on the
+    line from its middle to the free point of one of its triangles.
+    """
+    corners = Corners()
+    for point, row in zip(points, incident, strict=True):
+        corners.add(point, row, special=bool(row))
+    middles = []
+    for t, (a, b, c) in enumerate(triangles):
+        u, v = free_number(3 * t, seed), free_number(3 * t + 1, seed)
+        on_side = between(points[a], points[b], u)
+        x, y = between(on_side, points[c], v * Fraction(2, 3))
+        rounded = (Fraction(float(x)), Fraction(float(y)))
+        inside = _strictly_in(rounded, points[a], points[b], points[c])
+        middles.append(corners.add(rounded if inside else (x, y)))
+    across: defaultdict[frozenset[int], list[int]] = defaultdict(list)
+    for t, corner in enumerate(triangles):
+        for k in range(3):
+            across[frozenset((corner[k], corner[(k + 1) % 3]))].append(t)
+    bend: dict[frozenset[int], int] = {}
+    result, region_of = [], []
+    pieces: dict[tuple[int, int], int] = {}
+    for t, corner in enumerate(triangles):
+        for k in range(3):
+            a, b = corner[k], corner[(k + 1) % 3]
+            side = frozenset((a, b))
+            if (a, b) in walls:
+                free = free_wall_point(corners, a, b, a, seed)
+                result += [(middles[t], a, free), (middles[t], free, b)]
+                pieces[a, free] = pieces[free, b] = walls[a, b]
+                region_of += [t, t]
+                continue
+            if len(across[side]) == 1 or not (incident[a] and incident[b]):
+                result.append((middles[t], a, b))
+                region_of.append(t)
+                continue
+            if side not in bend:
+                bend[side] = _bend(corners, points, a, b, middles, across[side], len(bend), seed)
+            result += [(middles[t], a, bend[side]), (middles[t], bend[side], b)]
+            # The free point beside the side may lie outside this triangle.
+            region_of += [-1 if across[side][0] != t else t] * 2
+    regions = np.array(triangles, dtype=np.int64)
+    return Roots(corners, np.array(result, dtype=np.int64), pieces, regions, np.array(region_of))
+
+
+def _strictly_in(p: RationalPoint, a: RationalPoint, b: RationalPoint, c: RationalPoint) -> bool:
+    return orientation(a, b, p) > 0 and orientation(b, c, p) > 0 and orientation(c, a, p) > 0
+
+
+def _bend(
+    corners: Corners,
+    points: list[RationalPoint],
+    a: int,
+    b: int,
+    middles: list[int],
+    sides: list[int],
+    number: int,
+    seed: int,
+) -> int:
+    """A free point beside the side ab, visible from the middles of both its triangles."""
+    on_side = between(points[a], points[b], free_number(number, seed + 1))
+    first, second = corners.exact[middles[sides[0]]], corners.exact[middles[sides[1]]]
+    t = free_number(number, seed + 2) / 64
+    if orientation(points[a], points[b], first) < 0:
+        a, b = b, a
+    for _ in range(60):
+        point = between(on_side, first, t)
+        if orientation(second, point, points[a]) > 0 and orientation(second, points[b], point) > 0:
+            return corners.add(point)
+        t /= 16
+    raise Contradiction("no room for a free point beside a side")
+
+
+def plane_roots(instance: Instance, seed: int) -> Roots:
+    """Roots of the whole plane."""
+    from scipy.spatial import Delaunay
+
+    segments = instance.rational_segments()
+    touching: defaultdict[RationalPoint, list[int]] = defaultdict(list)
+    for k, segment in enumerate(segments):
+        for point in segment:
+            touching[point].append(2 * k + 1)
+    points = list(touching)
+    floats = np.array([[float(x), float(y)] for x, y in points])
+    centre = (floats.min(axis=0) + floats.max(axis=0)) / 2
+    reach = float(np.ptp(floats, axis=0).max())
+    turn = 0.3 + 0.7 * float(free_number(1, seed))
+    corners_far = [
+        (
+            Fraction(float(centre[0] + 6 * reach * np.cos(turn + 2 * np.pi * k / 3))),
+            Fraction(float(centre[1] + 6 * reach * np.sin(turn + 2 * np.pi * k / 3))),
+        )
+        for k in range(3)
+    ]
+    incident = [touching[p] for p in points] + [[], [], []]
+    points += corners_far
+    floats = np.concatenate([floats, [[float(x), float(y)] for x, y in corners_far]])
+    simplices = Delaunay((floats - centre) / reach).simplices
+    triangles = []
+    for a, b, c in simplices.tolist():
+        turn_sign = orientation(points[a], points[b], points[c])
+        if turn_sign == 0:
+            raise Contradiction("the triangulation of the endpoints is degenerate")
+        triangles.append((a, b, c) if turn_sign > 0 else (a, c, b))
+    inner = refined(points, incident, triangles, {}, seed)
+    n = len(points)
+    directions: list[RationalPoint] = [
+        (Fraction(float(p[0]) - float(centre[0])), Fraction(float(p[1]) - float(centre[1])))
+        for p in corners_far
+    ]
+    outer = []
+    marked = parallel_directions(instance)
+    ends = [inner.corners.add(d, weight=0.0) for d in directions]
+    for k in range(3):
+        a, b = n - 3 + k, n - 3 + (k + 1) % 3
+        low, high = directions[k], directions[(k + 1) % 3]
+        between_them = [(d, row) for d, row in marked if turns_left(low, d) and turns_left(d, high)]
+        between_them.sort(key=cmp_to_key(_by_turn))
+        chain = [ends[k]]
+        for direction, row in between_them:
+            if inner.corners.special[chain[-1]]:
+                last = inner.corners.exact[chain[-1]]
+                chain.append(inner.corners.add(_free_direction(last, direction, seed), weight=0.0))
+            chain.append(inner.corners.add(direction, row, weight=0.0, special=True))
+        chain.append(ends[(k + 1) % 3])
+        outer.append((b, a, chain[0]))
+        outer += [(b, d, e) for d, e in pairwise(chain)]
+    return Roots(
+        inner.corners,
+        np.concatenate([inner.triangles, outer]),
+        {},
+        inner.regions,
+        np.concatenate([inner.region_of, np.full(len(outer), -1)]),
+    )
+
+
+def _by_turn(x: tuple[RationalPoint, list[int]], y: tuple[RationalPoint, list[int]]) -> int:
+    """Order of directions within less than half a turn, counter-clockwise."""
+    return -1 if turns_left(x[0], y[0]) else 1
+
+
+def turns_left(d: RationalPoint, e: RationalPoint) -> bool:
+    """Whether direction e lies less than half a turn to the left of direction d."""
+    return d[0] * e[1] - d[1] * e[0] > 0
+
+
+def parallel_directions(instance: Instance) -> list[tuple[RationalPoint, list[int]]]:
+    """Both directions of every family of parallel segments, with 2·segment for its members.
+
+    There the lines of all members meet, at infinity.
+    """
+    families: defaultdict[Fraction | None, list[int]] = defaultdict(list)
+    vectors = []
+    for k, (a, b) in enumerate(instance.rational_segments()):
+        dx, dy = b[0] - a[0], b[1] - a[1]
+        vectors.append((dx, dy))
+        families[dy / dx if dx else None].append(k)
+    result = []
+    for members in families.values():
+        if len(members) > 1:
+            dx, dy = vectors[members[0]]
+            row = [2 * k for k in members]
+            result += [((dx, dy), row), ((-dx, -dy), row)]
+    return result
+
+
+def _free_direction(d: RationalPoint, e: RationalPoint, seed: int) -> RationalPoint:
+    """A free direction between two, in doubles."""
+    (dx, dy), (ex, ey) = ((float(v[0]), float(v[1])) for v in (d, e))
+    t = float(free_number(5, seed)) / np.hypot(ex, ey)
+    s = float(1 - free_number(5, seed)) / np.hypot(dx, dy)
+    free = (Fraction(float(s * dx + t * ex)), Fraction(float(s * dy + t * ey)))
+    if not (turns_left(d, free) and turns_left(free, e)):
+        raise Contradiction("no room for a free direction")
+    return free

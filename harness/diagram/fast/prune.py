@@ -1,0 +1,207 @@
+"""Dropping candidates that certainly lose all over a triangle."""
+
+from __future__ import annotations
+
+from harness.diagram.fast.forms import relation, surely_positive
+from harness.diagram.fast.jit import compiled
+
+
+@compiled
+def localise(norms, start, m, lam, share):
+    """ML and MQ of all candidates on a triangle, columns 0 and 1, from those of the root, 2 and 3.
+
+    Column 4 holds the root's corners at which L is zero (3 bits) and at which Q is (3 bits).  At
+    a point λ only the other corners contribute to L, so |L| ≤ ML·Σ λ_k over these, and roundings
+    are as much smaller.  If Q is zero at just one corner, |q(λ, λ')| ≤ MQ·(Σ λ_k + Σ λ'_k).
+    """
+    for bits in range(1, 8):
+        most = 0.0
+        for p in range(3):
+            total = 0.0
+            for k in range(3):
+                if not bits >> k & 1:
+                    total += lam[3 * p + k]
+            most = max(most, total)
+        share[bits] = most
+    for a in range(start, start + m):
+        flags = int(norms[a, 4])
+        norms[a, 0] = norms[a, 2] * share[flags & 7]
+        ends = flags >> 3
+        norms[a, 1] = norms[a, 3]
+        if ends == 1 or ends == 2 or ends == 4:
+            norms[a, 1] *= min(1.0, 2.0 * share[ends])
+
+
+@compiled
+def _line_sign(tables, row, error):
+    """The sign of L on the triangle if it is certainly constant in its interior, else 0."""
+    positive = negative = 0
+    for k in range(3):
+        if tables[row, k] > error:
+            positive += 1
+        elif tables[row, k] < -error:
+            negative += 1
+        elif tables[row, k] != 0.0:
+            return 0
+    if positive and negative:
+        return 0
+    return 1 if positive else (-1 if negative else 0)
+
+
+@compiled
+def _form_sign(tables, row, error):
+    """1 if Q ≥ 0 on the triangle, −1 if Q ≤ 0, certainly; else 0."""
+    positive = negative = 0
+    for k in range(3, 9):
+        if tables[row, k] > error:
+            positive += 1
+        elif tables[row, k] < -error:
+            negative += 1
+        elif tables[row, k] != 0.0:
+            return 0
+    if positive and negative:
+        return 0
+    return 1 if positive else (-1 if negative else 0)
+
+
+@compiled
+def beats(tables, i, j, lt, ls, qt, qs, bound, far, known):
+    """Whether the first candidate certainly wins against the second all over the triangle.
+
+    ``lt``, ``ls``: signs of L (0: not constant).  ``qt``, ``qs``: signs of Q (0: not constant).
+    """
+    if lt != 0 and ls != 0:
+        return surely_positive(tables, i, j, lt, ls, bound, far, known)
+    if qt == 1 and qs == -1:
+        return True
+    if lt != 0:  # |L_s| is ±L_s: one sign suffices where Q_t ≥ 0, else take both
+        one = surely_positive(tables, i, j, lt, 1.0, bound, far, known)
+        if qt == 1:
+            return one or surely_positive(tables, i, j, lt, -1.0, bound, far, known)
+        return one and surely_positive(tables, i, j, lt, -1.0, bound, far, known)
+    if ls != 0:  # likewise for |L_t|, where Q_s ≤ 0
+        one = surely_positive(tables, i, j, 1.0, ls, bound, far, known)
+        if qs == -1:
+            return one or surely_positive(tables, i, j, -1.0, ls, bound, far, known)
+        return one and surely_positive(tables, i, j, -1.0, ls, bound, far, known)
+    return False
+
+
+@compiled
+def collinear_beats(tables, i, j, length_i, length_j, bound):
+    """The same for two segments on one line: G > 0."""
+    for k in range(3, 9):
+        if not tables[i, k] * length_j - tables[j, k] * length_i > bound:
+            return False
+    return True
+
+
+@compiled
+def _best_at(tables, start, m, corner):
+    """The candidate with the greatest Q/|L| at a corner (3: the middle), in doubles."""
+    best, bq, bl = -1, 0.0, 1.0
+    for a in range(m):
+        r = start + a
+        if corner < 3:
+            q, line = tables[r, 3 + corner], abs(tables[r, corner])
+        else:
+            q = tables[r, 3] + tables[r, 4] + tables[r, 5]
+            q += 2.0 * (tables[r, 6] + tables[r, 7] + tables[r, 8])
+            line = abs(tables[r, 0] + tables[r, 1] + tables[r, 2])
+        if q == 0.0 and line == 0.0:
+            continue
+        if best < 0 or q * bl > bq * line:
+            best, bq, bl = a, q, line
+    return best
+
+
+@compiled
+def prune(tables, norms, ids, start, m, factor, far, definite, work, world, spots):
+    """Drop candidates beaten by a pivot; the number left, moved to the front (stable)."""
+    pivots, lsign, qsign, beaten = work
+    count = 0
+    for corner in range(4):
+        best = _best_at(tables, start, m, corner)
+        new = best >= 0
+        for r in range(count):
+            new = new and pivots[r] != best
+        if new:
+            pivots[count] = best
+            count += 1
+    for a in range(m):
+        beaten[a] = 0
+        if definite:
+            lsign[a] = 1
+            qsign[a] = 0
+        else:
+            lsign[a] = _line_sign(tables, start + a, factor * norms[start + a, 0])
+            qsign[a] = _form_sign(tables, start + a, factor * norms[start + a, 1])
+    tests = 0
+    for a in range(m):
+        for r in range(count):
+            p = pivots[r]
+            if p == a or beaten[p]:
+                continue
+            tests += 1
+            if _tested(tables, norms, ids, start, p, a, lsign, qsign, factor, far, world, spots):
+                beaten[a] = 1
+                break
+    kept = keep(tables, norms, ids, start, m, lsign, qsign, beaten)
+    if 1 < kept <= 6:
+        kept = _prune_pairs(
+            tables, norms, ids, start, kept, lsign, qsign, beaten, factor, far, world, spots
+        )
+    return kept, tests
+
+
+@compiled
+def keep(tables, norms, ids, start, m, lsign, qsign, beaten):
+    """Move the candidates that are not beaten to the front; their number."""
+    kept = 0
+    for a in range(m):
+        if not beaten[a]:
+            if kept != a:
+                for c in range(9):
+                    tables[start + kept, c] = tables[start + a, c]
+                for c in range(5):
+                    norms[start + kept, c] = norms[start + a, c]
+                ids[start + kept] = ids[start + a]
+                lsign[kept] = lsign[a]
+                qsign[kept] = qsign[a]
+            kept += 1
+    return kept
+
+
+@compiled
+def _tested(tables, norms, ids, start, p, a, lsign, qsign, factor, far, world, spots):
+    lines, lengths, classes, tie_first, ties = world
+    i, j = ids[start + p], ids[start + a]
+    if lines[i] >= 0 and lines[i] == lines[j]:
+        bound = factor * (norms[start + p, 1] * lengths[j] + norms[start + a, 1] * lengths[i])
+        return collinear_beats(tables, start + p, start + a, lengths[i], lengths[j], bound)
+    bound = factor * (
+        norms[start + p, 1] * norms[start + a, 0] + norms[start + a, 1] * norms[start + p, 0]
+    )
+    known = relation(i, j, classes, tie_first, ties, spots)
+    return beats(
+        tables, start + p, start + a, lsign[p], lsign[a], qsign[p], qsign[a], bound, far, known
+    )
+
+
+@compiled
+def _prune_pairs(tables, norms, ids, start, m, lsign, qsign, beaten, factor, far, world, spots):
+    for a in range(m):
+        beaten[a] = 0
+    for a in range(m):
+        for p in range(m):
+            if (
+                p != a
+                and not beaten[p]
+                and _tested(
+                    tables, norms, ids, start, p, a, lsign, qsign, factor, far, world, spots
+                )
+            ):
+                beaten[a] = 1
+                break
+    kept = keep(tables, norms, ids, start, m, lsign, qsign, beaten)
+    return kept
