@@ -185,9 +185,9 @@ class Descent:
 
     def _halve(self, k: int, half: int) -> None:
         for number, table in enumerate(self.tables):
-            both = np.empty(9), np.empty(9)
-            halve(table, k, *both)
-            self.tables[number] = both[half]
+            rows = np.stack([table, np.empty(9)])
+            halve(rows, 0, k, 1)
+            self.tables[number] = rows[1 - half]
         self.corners = halved(self.corners, k)[half]
         self.far = sum(1 << c for c, corner in enumerate(self.corners) if corner[2] == 0)
         p, q, r = (self.weights[(k + turn) % 3] for turn in range(3))
@@ -207,8 +207,13 @@ class Descent:
             rows, self.norms, self.scene.zeros, self.scene.ends, strict=True
         ):
             row[2:4], row[4] = norm, zeros + 8 * ends
-        localise(rows, 0, 2, self.weights.ravel())
+        localise(rows, 0, 2, self.weights.ravel(), np.ones(8))
         return rows[:, :2]
+
+    @property
+    def rows(self) -> Floats:
+        """The tables of both segments, (2, 9)."""
+        return np.stack(self.tables)
 
     @property
     def bound(self) -> float:

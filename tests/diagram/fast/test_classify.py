@@ -123,7 +123,7 @@ def mixed(tables: list[Table], rng: random.Random, fineness: float) -> tuple[int
     )
     bound = max(24 * U * size(t, s), float(off / SHARE))
     kind, ports, choice = classify_mixed(
-        shifted[0], shifted[1], line_sign(t), line_sign(s), form_sign(t), bound, 0, 0, w
+        np.stack(shifted), 0, 1, line_sign(t), line_sign(s), form_sign(t), bound, 0, 0, w
     )
     return kind, ports, choice, w[4]
 

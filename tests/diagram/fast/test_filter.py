@@ -46,12 +46,11 @@ SIGNS = st.sampled_from([1, -1])
 
 def coefficients(here: Descent, si: int, sj: int) -> tuple[np.ndarray, np.ndarray]:
     values, signs = np.empty(10), np.empty(10, np.int64)
-    t, s = here.tables
     # Where the vectors are equal up to sign this is known beforehand; see ``prepare``.
     (a, b), (c, d) = here.scene.segments
     one, two = (b[0] - a[0], b[1] - a[1]), (d[0] - c[0], d[1] - c[1])
     alike = two in (one, (-one[0], -one[1]))
-    cubic(t, s, si, sj, here.bound, here.far, int(alike), values, signs)
+    cubic(here.rows, 0, 1, si, sj, here.bound, here.far, int(alike), values, signs)
     return values, signs
 
 
@@ -127,7 +126,7 @@ def test_signs_are_never_wrong(scene: Scene, path: list[tuple[int, int]], si: in
     for value, claimed, true in zip(values.tolist(), signs.tolist(), truth, strict=True):
         assert claimed in (true, UNKNOWN)
         assert claimed != 0 or value == 0.0
-    claim = surely_positive(*here.tables, si, sj, here.bound, here.far, 0)
+    claim = surely_positive(here.rows, 0, 1, si, sj, here.bound, here.far, 0)
     assert not claim or (min(truth) >= 0 and max(truth) > 0)
 
 
@@ -160,7 +159,7 @@ def test_collinear_segments(scene: Scene, path: list[tuple[int, int]], at: int, 
     norms = here.local_norms()
     bound = here.bound / (norms[0][1] * norms[1][0] + norms[1][1] * norms[0][0])
     bound *= norms[0][1] * other + norms[1][1] * length
-    collinear_quadratic(*here.tables, length, other, bound, values, signs)
+    collinear_quadratic(here.rows, 0, 1, length, other, bound, values, signs)
     truth = exact_collinear(*here.exact(), Fraction(1, times))
     for value, claimed, exact in zip(values.tolist(), signs.tolist(), truth, strict=True):
         assert claimed in (sign(exact), UNKNOWN)
