@@ -7,7 +7,7 @@ rationals and rounded once, which makes the charts of thin or tiny triangles as 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cached_property
 from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
@@ -17,7 +17,7 @@ from flint import fmpq, fmpq_poly
 
 from harness.diagram.fast.counting import FastDiagram
 from harness.diagram.fast.forms import SIDES, STEPS, value_and_gradient
-from harness.diagram.fast.leaves import CROSSING, EMPTY, QUAD
+from harness.diagram.fast.leaves import CROSSING, EMPTY
 from harness.diagram.fast.prepare import Floats, Ints
 from harness.diagram.fast.univariate import from_bernstein, zeros_inside
 from harness.diagram.roots import real_root_balls
@@ -49,14 +49,11 @@ _STARTS = [((k + 0.5) / 8, (m + 0.5) / 8) for k in range(8) for m in range(8 - k
 _rows: WeakKeyDictionary[FastDiagram, Ints] = WeakKeyDictionary()
 
 
-def row_of_leaf(diagram: FastDiagram, leaf: int) -> int:
-    """The row in ``leaves.shapes`` of a leaf that is not empty.
-
-    O(1), after a table has been made in O(leaves).
-    """
+def rows_of_leaves(diagram: FastDiagram) -> Ints:
+    """The row in ``leaves.shapes`` of every leaf that is not empty; made once, in O(leaves)."""
     if diagram not in _rows:
         _rows[diagram] = np.cumsum(diagram.leaves.kinds != EMPTY) - 1
-    return int(_rows[diagram][leaf])
+    return _rows[diagram]
 
 
 def rounded(value: Any) -> float:
@@ -84,7 +81,7 @@ class Chart:
         """O(1), after the first chart of a diagram."""
         self.diagram = diagram
         self.leaf = leaf
-        self.row = row_of_leaf(diagram, leaf)
+        self.row = int(rows_of_leaves(diagram)[leaf])
         roots, leaves = diagram.roots, diagram.leaves
         triangle = roots.triangles[leaves.shape_roots[self.row]].tolist()
         of_root = [
@@ -256,9 +253,7 @@ class Chart:
         pair = [
             np.array([rounded(x) for x in self.cubic(a, k, self.signs(a, k)[0])]) for k in (b, c)
         ]
-        first = tuple(self.diagram.leaves.points[self.row].tolist())
-        starts = _STARTS if self.diagram.leaves.kinds[self.leaf] == QUAD else [first, *_STARTS]
-        for start in (first, *starts):
+        for start in (self.diagram.leaves.points[self.row].tolist(), *_STARTS):
             found = _newton(pair[0], pair[1], start)
             if found is not None:
                 return found
@@ -288,10 +283,11 @@ def _raised(g: list[Any]) -> list[Any]:
     ]  # fmt: skip
 
 
-def _newton(f: Floats, g: Floats, start: tuple[float, ...]) -> Weights | None:
+def _newton(f: Floats, g: Floats, start: Sequence[float]) -> Weights | None:
     """The common zero of two cubics in the triangle to which Newton's method leads, if any."""
     x, y = start
     out = np.zeros(3)
+    step = 1.0
     for _ in range(40):
         value_and_gradient(f, x, y, out)
         u, ux, uy = out.tolist()
@@ -304,7 +300,8 @@ def _newton(f: Floats, g: Floats, start: tuple[float, ...]) -> Weights | None:
         x, y = x - dx, y - dy
         if not (abs(x) < 4.0 and abs(y) < 4.0):
             return None
-        if abs(dx) + abs(dy) < 1e-15:
+        step = abs(dx) + abs(dy)
+        if step < 1e-15:
             break
     z = 1.0 - x - y
-    return (z, x, y) if min(x, y, z) > -1e-12 else None
+    return (z, x, y) if min(x, y, z) > -1e-12 and step < 1e-9 else None

@@ -4,23 +4,29 @@ from __future__ import annotations
 
 from weakref import WeakKeyDictionary
 
+import numpy as np
+from numpy.typing import NDArray
+
 from harness.diagram.fast.arrays import Arrays
-from harness.diagram.fast.chart import Chart
+from harness.diagram.fast.chart import Chart, rows_of_leaves
 from harness.diagram.fast.counting import FastDiagram
 from harness.diagram.fast.leaves import CROSSING, TRIPLE
 from harness.diagram.fast.nodes import vertex_points
-from harness.diagram.fast.prepare import Floats
+from harness.diagram.fast.prepare import Floats, Ints
 from harness.diagram.planar_map import Node, RationalPoint
 from harness.geometry.exact import fraction, point
 
+#: Polished points of ties, one row for every vertex; NaN where that failed.
 _ties: WeakKeyDictionary[FastDiagram, Floats] = WeakKeyDictionary()
+_STEPS = 6
+#: Relative to the size of the instance: the last step of an iteration that has converged.
+_LAST_STEP = 1e-13
 
 
 def node_point(diagram: FastDiagram, node: int) -> tuple[float, float]:
     """The point of a node; at infinity, the direction as a unit vector.
 
-    A tie of three is where the builder found it, in doubles; other nodes are exact up to rounding.
-    O(1) after the first tie, which makes a table of all.
+    O(1), after a table of all ties has been made when the first is asked for.
     """
     arrays, vertices = diagram.arrays, len(diagram.arrays.vertices)
     if node < vertices:
@@ -47,13 +53,85 @@ def _vertex_point(diagram: FastDiagram, vertex: int) -> tuple[float, float]:
     if kind == CROSSING:
         x, y = crossing(diagram, leaf)
         return float(x), float(y)
-    if kind != TRIPLE:
-        chart = Chart(diagram, leaf)
-        return chart.plane(chart.vertex(vertex))
-    if diagram not in _ties:
-        _ties[diagram] = vertex_points(diagram.roots, diagram.leaves, arrays)
-    x, y = _ties[diagram][vertex].tolist()
-    return x, y
+    if kind == TRIPLE:
+        if diagram not in _ties:
+            _ties[diagram] = _polished(diagram)
+        x, y = _ties[diagram][vertex].tolist()
+        if x == x:
+            return x, y
+    chart = Chart(diagram, leaf)
+    return chart.plane(chart.vertex(vertex))
+
+
+def _polished(diagram: FastDiagram) -> Floats:
+    """The ties of three segments, (v, 2), by Newton's method in the plane from the builder's guess.
+
+    NaN for other vertices, and where the iteration does not converge inside the leaf.
+    """
+    arrays, leaves = diagram.arrays, diagram.leaves
+    result = np.full((len(arrays.vertices), 2), np.nan)
+    ties = np.flatnonzero(leaves.kinds[arrays.vertices[:, 0]] == TRIPLE)
+    leaf = arrays.vertices[ties, 0]
+    ends = diagram.instance.segments[arrays.owner[arrays.start[leaf][:, None] + np.arange(3)]]
+    p = vertex_points(diagram.roots, leaves, arrays)[ties]
+    step = np.zeros_like(p)
+    with np.errstate(all="ignore"):
+        for _ in range(_STEPS):
+            value, slope = _contests(ends, p)
+            step = (
+                np.stack(
+                    [
+                        value[:, 0] * slope[:, 1, 1] - value[:, 1] * slope[:, 0, 1],
+                        value[:, 1] * slope[:, 0, 0] - value[:, 0] * slope[:, 1, 0],
+                    ],
+                    axis=1,
+                )
+                / np.linalg.det(slope)[:, None]
+            )
+            p = p - step
+    size = float(np.ptp(diagram.instance.segments.reshape(-1, 2), axis=0).max())
+    small = np.abs(step).max(axis=1, initial=0.0) < _LAST_STEP * size
+    good = small & _is_inside(diagram, leaf, p)
+    result[ties[good]] = p[good]
+    return result
+
+
+def _contests(ends: Floats, p: Floats) -> tuple[Floats, Floats]:
+    """F_01 and F_02 of three segments (k, 3, 2, 2) at points (k, 2): values (k, 2), gradients
+    (k, 2, 2)."""
+    to_a, to_b = ends[:, :, 0] - p[:, None], ends[:, :, 1] - p[:, None]
+    d = to_b - to_a
+    q, d_q = (to_a * to_b).sum(axis=2), -(to_a + to_b)
+    line = to_a[:, :, 0] * d[:, :, 1] - to_a[:, :, 1] * d[:, :, 0]
+    d_line = np.stack([-d[:, :, 1], d[:, :, 0]], axis=2)
+    sign = np.sign(line)
+    line, d_line = line * sign, d_line * sign[:, :, None]
+    value = q[:, :1] * line[:, 1:] - q[:, 1:] * line[:, :1]
+    slope = d_q[:, :1] * line[:, 1:, None] + q[:, :1, None] * d_line[:, 1:]
+    slope -= d_q[:, 1:] * line[:, :1, None] + q[:, 1:, None] * d_line[:, :1]
+    return value, slope
+
+
+def _is_inside(diagram: FastDiagram, leaf: Ints, p: Floats) -> NDArray[np.bool_]:
+    """Whether points (k, 2) are inside leaves (k,), as far as doubles tell."""
+    leaves, roots = diagram.leaves, diagram.roots
+    rows = rows_of_leaves(diagram)[leaf]
+    exact = np.array([[float(x), float(y)] for x, y in roots.corners.exact]).reshape(-1, 2)
+    corners = np.column_stack([exact, roots.corners.weights])[
+        roots.triangles[leaves.shape_roots[rows]]
+    ]
+    shapes = leaves.shapes[rows].reshape(-1, 3, 3)
+    point = np.column_stack([p, np.ones(len(p))])
+    with np.errstate(all="ignore"):
+        inside: NDArray[np.bool_] = np.ones(len(p), dtype=bool)
+        triangle = shapes @ corners
+        for k in range(3):
+            u, v = triangle[:, (k + 1) % 3], triangle[:, (k + 2) % 3]
+            normal = np.cross(u, v)
+            here = (normal * point).sum(axis=1)
+            there = (normal * triangle[:, k]).sum(axis=1)
+            inside &= here > 1e-9 * there
+    return inside
 
 
 def crossing(diagram: FastDiagram, leaf: int) -> RationalPoint:
