@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from harness.geometry.coordinates import Point
     from harness.geometry.instance import Instance
 
-BUILDERS = ("fast", "reference")
+BUILDERS = ("reference", "fast")
 """The names of the builders; the first is the default."""
 
 MOST_HANDED_OVER = 32
@@ -62,9 +62,12 @@ def _fast_or_reference(
     from dataclasses import replace
 
     from harness.diagram.fast.map import build_fast
+    from harness.diagram.fast.prepare import has_plain_size
     from harness.diagram.work import Contradiction, Work
 
     try:
+        if not has_plain_size(instance):
+            raise Contradiction("coordinates beyond the middle of the range of doubles")
         return build_fast(instance, domain, objective, corners, workers)
     except Contradiction as problem:
         if instance.n > MOST_HANDED_OVER:

@@ -26,7 +26,7 @@ def execute(task: Task) -> Measurement:
     instance = Instance.from_generated(generated)
     validate(instance)
     start = time.perf_counter()
-    planar_map = build(instance, task.domain, task.objective, task.builder)
+    planar_map = build(instance, task.domain, task.objective, task.builder, workers=1)
     seconds = time.perf_counter() - start
     try:
         planar_map.sanity_check()

@@ -7,6 +7,7 @@ rationals and rounded once, which makes the charts of thin or tiny triangles as 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -16,8 +17,8 @@ import numpy as np
 from flint import fmpq, fmpq_poly
 
 from harness.diagram.fast.counting import FastDiagram
-from harness.diagram.fast.forms import SIDES, STEPS, value_and_gradient
-from harness.diagram.fast.leaves import CROSSING, EMPTY
+from harness.diagram.fast.forms import SIDES, STEPS, gradient_controls, value_and_gradient
+from harness.diagram.fast.leaves import CROSSING, EMPTY, hull_determinant
 from harness.diagram.fast.prepare import Floats, Ints
 from harness.diagram.fast.univariate import from_bernstein, zeros_inside
 from harness.diagram.roots import real_root_balls
@@ -230,6 +231,21 @@ class Chart:
         halves = arrays.out[arrays.out_first[vertex] : arrays.out_first[vertex + 1]]
         return tuple(sorted({int(k) for k in arrays.owner[arrays.arcs[halves >> 1, 2:]].ravel()}))
 
+    def contests_at(self, vertex: int) -> list[list[Any]]:
+        """The contests F of one of three tied segments with the two others, exactly.
+
+        Of the three choices the one whose gradients are farthest from parallel on the whole
+        triangle: a leaf is accepted only if for one of them there is no second common zero.
+        """
+        tied = self.tied_at(vertex)
+
+        def contests(one: int) -> list[list[Any]]:
+            return [
+                self.cubic(one, other, self.signs(one, other)[0]) for other in tied if other != one
+            ]
+
+        return max((contests(one) for one in tied), key=_independence)
+
     @property
     def is_crossing(self) -> bool:
         """Whether the leaf holds the common point of two segments' lines."""
@@ -249,12 +265,9 @@ class Chart:
         if self.is_crossing:
             one, two, three = (rounded(x) for x in self.crossing())
             return one, two, three
-        a, b, c = self.tied_at(vertex)
-        pair = [
-            np.array([rounded(x) for x in self.cubic(a, k, self.signs(a, k)[0])]) for k in (b, c)
-        ]
+        f, g = (np.array([rounded(x) for x in cubic]) for cubic in self.contests_at(vertex))
         for start in (self.diagram.leaves.points[self.row].tolist(), *_STARTS):
-            found = _newton(pair[0], pair[1], start)
+            found = _newton(f, g, start)
             if found is not None:
                 return found
         raise ArithmeticError(f"no vertex was found in leaf {self.leaf}")
@@ -281,6 +294,15 @@ def _raised(g: list[Any]) -> list[Any]:
         (g[1] + 2 * g[5]) / 3, (g[2] + 2 * g[4]) / 3, (g[2] + 2 * g[5]) / 3,
         (g[3] + g[4] + g[5]) / 3,
     ]  # fmt: skip
+
+
+def _independence(contests: list[list[Any]]) -> float:
+    """The least |det| of gradients of two cubics over the triangle, relative to their sizes."""
+    controls = np.zeros((2, 6, 2))
+    for cubic, gradients in zip(contests, controls, strict=True):
+        gradient_controls(np.array([rounded(x) for x in cubic]), gradients)
+    largest = np.abs(controls).max(axis=(1, 2))
+    return abs(float(hull_determinant(controls[0], controls[1], 0.0, 0.0))) / math.prod(largest)
 
 
 def _newton(f: Floats, g: Floats, start: Sequence[float]) -> Weights | None:

@@ -190,7 +190,11 @@ def _attempt(
     nodes = find_nodes(prepared, roots, leaves, arrays, domain == "plane")
     edges, edge_of_arc = joined(arrays, nodes.of_port)
     cell_of_slot, cells = chains.number_classes(arrays.parent, arrays.owner)
-    far = {int(cell_of_slot[s]) for s in unbounded_classes(arrays)} if domain == "plane" else set()
+    far = (
+        {int(cell_of_slot[s]) for s in unbounded_classes(arrays, nodes)}
+        if domain == "plane"
+        else set()
+    )
     return FastDiagram(
         prepared=prepared,
         domain=domain,

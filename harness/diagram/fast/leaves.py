@@ -128,12 +128,12 @@ def side_zero(values, k, rising):
     at_low, at_high = values[SIDES[k, 0]], values[SIDES[k, 3]]
     if not rising:
         at_low, at_high = -at_low, -at_high
-    # Structural zeros at an end count as the sign beyond the zero that is sought.
-    at_low, at_high = min(at_low, -1e-300), max(at_high, 1e-300)
     middle, last = 0.5, 0
-    for _ in range(40):
-        middle = (low * at_high - high * at_low) / (at_high - at_low)
-        if not low < middle < high:
+    for _ in range(60):
+        # An end may be a structural zero: leave it by bisection.
+        if at_low < 0.0 < at_high:
+            middle = (low * at_high - high * at_low) / (at_high - at_low)
+        if not (at_low < 0.0 < at_high and low < middle < high):
             middle = 0.5 * (low + high)
         value = side_value(values, k, middle)
         if not rising:

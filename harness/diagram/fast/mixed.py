@@ -11,6 +11,7 @@ from harness.diagram.fast.leaves import (
     FAILED,
     TWO_ARCS,
     germ,
+    meet,
     side_value,
     side_zero,
     sign_changes,
@@ -68,11 +69,10 @@ def classify_mixed(tables, i, j, la, lb, q, bound, far, known, w):
         if zeros_plus < 0 or zeros_minus < 0 or count > 7:
             return FAILED, 0, 0
         if zeros_plus == 1 and zeros_minus == 1:
-            at = side_zero(values[0, 1], k, plus < 0)
-            there = side_value(values[1, 0], k, at)
-            if not abs(there) > 2.0 * bound:
+            first = _first_to_change(values, bound, k, plus, minus)
+            if first < 0:
                 return FAILED, 0, 0
-            plus_first = (there > 0.0) == (minus > 0)
+            plus_first = first == 0
             count = _add(slots, curves, count, 2 * position + 1, 0 if plus_first else 1)
             count = _add(slots, curves, count, 2 * position + 1, 1 if plus_first else 0)
         elif zeros_plus == 1:
@@ -99,8 +99,29 @@ def classify_mixed(tables, i, j, la, lb, q, bound, far, known, w):
     if curves[0] + curves[1] + curves[2] + curves[3] != 2:
         return FAILED, 0, 0
     if curves[0] != curves[1] and curves[1] != curves[2]:
+        if la != 0 or lb != 0:
+            return FAILED, 0, 0
+        meet(values[0, 1], values[1, 0], w[6], w[5])
         return CROSSING, 4, 0
     return TWO_ARCS, 4, (0 if curves[0] == curves[1] else 1)
+
+
+@compiled
+def _first_to_change(values, bound, k, plus, minus):
+    """Which of F₊ (0) and F₋ (1) is the first to change its sign on side k; −1 if unsure.
+
+    Both change once.  At any point where just one of them certainly has changed, that is the first.
+    """
+    one = side_zero(values[0, 1], k, plus < 0)
+    two = side_zero(values[1, 0], k, minus < 0)
+    t = 0.5 * (one + two)
+    at_plus, at_minus = side_value(values[0, 1], k, t), side_value(values[1, 0], k, t)
+    if not (abs(at_plus) > 2.0 * bound and abs(at_minus) > 2.0 * bound):
+        return -1
+    plus_changed, minus_changed = (at_plus > 0.0) != (plus > 0), (at_minus > 0.0) != (minus > 0)
+    if plus_changed == minus_changed:
+        return -1
+    return 0 if plus_changed else 1
 
 
 @compiled

@@ -70,6 +70,8 @@ def _polished(diagram: FastDiagram) -> Floats:
     """
     arrays, leaves = diagram.arrays, diagram.leaves
     result = np.full((len(arrays.vertices), 2), np.nan)
+    if diagram.instance.exact is not None:
+        return result  # the endpoints are no doubles
     ties = np.flatnonzero(leaves.kinds[arrays.vertices[:, 0]] == TRIPLE)
     leaf = arrays.vertices[ties, 0]
     ends = diagram.instance.segments[arrays.owner[arrays.start[leaf][:, None] + np.arange(3)]]

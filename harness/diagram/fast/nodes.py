@@ -125,9 +125,13 @@ def root_points(roots: Roots, root: Ints, weights: Floats) -> Floats:
     return points
 
 
-def unbounded_classes(arrays: Arrays) -> set[int]:
-    """Classes of slots that reach infinity."""
+def unbounded_classes(arrays: Arrays, nodes: Nodes) -> set[int]:
+    """Classes of slots that reach infinity, if only in one direction, between two edges."""
     result = set()
+    for corner in nodes.far:
+        for port in corner.ports:
+            pieces = arrays.arcs[arrays.inward[port] >> 1, 2:].tolist()
+            result |= {int(find(arrays.parent, piece)) for piece in pieces}
     for root, k in np.argwhere(arrays.opposite == INFINITY).tolist():
         port, _, first, _ = arrays.sides[root, k].tolist()
         result.add(int(find(arrays.parent, first)))

@@ -85,8 +85,7 @@ class TiePlace:
         """``chart``: of the leaf of ``vertex``."""
         self._chart = chart
         self._vertex = vertex
-        a, b, c = chart.tied_at(vertex)
-        self._cubics = [chart.cubic(a, k, chart.signs(a, k)[0]) for k in (b, c)]
+        self._cubics = chart.contests_at(vertex)
 
     def enclosure(self, bits: int) -> tuple[RationalPoint, RationalPoint]:
         """A box that certainly contains the vertex.

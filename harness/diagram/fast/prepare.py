@@ -35,6 +35,13 @@ class Prepared:
     lengths: Floats
 
 
+def has_plain_size(instance: Instance) -> bool:
+    """Whether products of a few coordinates, and their differences, stay far from overflow."""
+    segments = instance.segments
+    lengths = np.abs(segments[:, 1] - segments[:, 0]).max(axis=1)
+    return bool(np.abs(segments).max() < 1e50 and lengths.min() > 1e-50)
+
+
 def prepare(instance: Instance, parallels: bool) -> Prepared:
     """Arrays of an instance; ``parallels``: find equal vectors (needed at infinity only)."""
     n = instance.n
