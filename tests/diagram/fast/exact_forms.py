@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from harness.diagram.fast.forms import error_factor, halve
-from harness.diagram.fast.subdivide import localise
+from harness.diagram.fast.prune import localise
 from harness.diagram.fast.tables import root_table
 
 Point = tuple[Fraction, Fraction]

@@ -30,6 +30,7 @@ from harness.diagram.fast.leaves import (
 )
 from harness.diagram.fast.mixed import classify_mixed
 from harness.diagram.fast.sides import new_scratch
+from harness.geometry.instance import Instance
 from tests.diagram.fast.exact_forms import exact_cubic, sign
 from tests.diagram.fast.triangles import Cut, Seen, cuts, diagrams
 
@@ -210,6 +211,24 @@ def test_leaves_are_what_the_reference_sees(suite: str) -> None:
     every = diagrams(rng, SUITES[suite], 5)
     for _ in range(12):
         made = next(every)
-        for cut in cuts(made, rng, 12):
+        for cut in cuts(made, rng, 30):
             assert examined(cut, rng, found) == [], cut
     assert {"arc", "triple", "empty"} <= set(found)
+
+
+def test_two_zeros_on_a_side_that_begins_at_an_endpoint() -> None:
+    """Beside the extension of a segment, seen from its end, F₋ and F₊ change sign one after other.
+
+    Both are zero at the end itself, so their zeros must not be sought there.
+    """
+    tip = (0.6822124741044564, 0.7416288935300173)
+    segments = [
+        ((0.0004259052132281338, 0.48102599308459515), (0.12433138461819052, 0.5721078130169469)),
+        ((0.6711922315320911, 0.5882437806041907), tip),
+    ]
+    corners = [tip, (0.69189645, 1.06654734), (0.57358932, 0.96392033)]
+    exact = tuple((Fraction(x), Fraction(y)) for x, y in corners)
+    cut = Cut(Instance.from_arrays("segments", segments), "smallest", exact)  # type: ignore[arg-type]  # three long
+    found: Counter[str] = Counter()
+    assert examined(cut, random.Random(1), found) == []
+    assert set(found) <= {"two arcs"}

@@ -110,19 +110,26 @@ def _near(rng: random.Random, x: float, y: float, size: float) -> RationalPoint:
 
 
 def cuts(made: PlanarMap, rng: random.Random, count: int) -> Iterator[Cut]:
-    """Triangles about nodes, points of edges and endpoints, with up to four candidates."""
+    """Triangles about nodes and elsewhere, with up to four candidates."""
     segments = made.instance.rational_segments()
     box = made.instance.segments.reshape(-1, 2)
     size = float((box.max(axis=0) - box.min(axis=0)).max())
     places = [node.point for node in made.nodes if node.kind != "infinity"]
-    places += [tuple(p) for edge in made.edges for p in edge.polyline(0.01 * size)[1:-1:2].tolist()]
+    low, high = box.min(axis=0), box.max(axis=0)
+    for _ in range(len(places) // 2 + 4):
+        x, y = (rng.uniform(a - size / 2, b + size / 2) for a, b in zip(low, high, strict=True))
+        places.append((x, y))
     places = [(x, y) for x, y in places if abs(x) + abs(y) < 1e3 * size + abs(box).max()]
     for _ in range(count if places else 0):
         x, y = rng.choice(places)
-        radius = 2.0 ** round(rng.uniform(-9, -1)) * size
+        radius = 2.0 ** round(rng.uniform(-9, 1)) * size
+        end = rng.choice(rng.choice(segments))
+        at_end = rng.random() < 0.4
+        if at_end:
+            x, y = float(end[0]), float(end[1])
         corners = [_near(rng, x, y, radius) for _ in range(3)]
-        if rng.random() < 0.3:
-            corners[0] = rng.choice(rng.choice(segments))
+        if at_end:
+            corners[0] = end
         turn = orientation(*corners)
         if turn == 0:
             continue
