@@ -93,6 +93,15 @@ class LeafArc:
         count = len(self.stretches)
         samples = [(k + r) / count for k in range(count) for r in _SAMPLES]
         slopes = [self._slope(r) for r in samples]
+        if self.which == 0:
+            # cot θ is infinite where the arc crosses the line that both segments are on.
+            points = [self.at(r) for r in samples]
+            line = [_linear(self._forms[0], p) for p in points]
+            values += [
+                math.copysign(math.inf, _polar(self._forms[0], p, p))
+                for p, one, two in zip(points, line, line[1:], strict=False)
+                if one * two < 0
+            ]
         for k in range(len(samples) - 1):
             if slopes[k] * slopes[k + 1] < 0:
                 turn = brentq(self._slope, samples[k], samples[k + 1], xtol=1e-12)
