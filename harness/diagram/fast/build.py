@@ -246,17 +246,33 @@ def exact_corners(roots: Roots, root: int, shape: Floats) -> list[RationalPoint]
     return result
 
 
-def solve_open(
-    prepared: Prepared, roots: Roots, leaves: Leaves, domain: Domain, objective: Objective
-) -> dict[int, LocalMap]:
-    """The local maps of all open leaves, by leaf."""
+def open_rows(leaves: Leaves) -> Ints:
+    """The rows (among the leaves that are not empty) of hard and undecided leaves.
+
+    Number k of them has the candidates from ``open_first[k]`` on.
+    """
     shaped = np.flatnonzero(leaves.kinds != EMPTY)
-    is_open = (leaves.kinds[shaped] == HARD) | (leaves.choices[shaped] < 0)
+    return np.flatnonzero((leaves.kinds[shaped] == HARD) | (leaves.choices[shaped] < 0))
+
+
+def solve_open(
+    prepared: Prepared,
+    roots: Roots,
+    leaves: Leaves,
+    rows: Ints,
+    domain: Domain,
+    objective: Objective,
+) -> dict[int, LocalMap]:
+    """The local maps of the open leaves that are still open, by leaf; ``rows``: all of them."""
+    shaped = np.flatnonzero(leaves.kinds != EMPTY)
     solved = {}
-    for number, row in enumerate(np.flatnonzero(is_open).tolist()):
+    for number, row in enumerate(rows.tolist()):
+        leaf = int(shaped[row])
+        if leaves.kinds[leaf] != HARD and leaves.choices[leaf] >= 0:
+            continue
         low, high = leaves.open_first[number], leaves.open_first[number + 1]
         corners = exact_corners(roots, int(leaves.shape_roots[row]), leaves.shapes[row])
-        solved[int(shaped[row])] = solve(
+        solved[leaf] = solve(
             prepared.instance, leaves.open_ids[low:high].tolist(), corners, domain, objective
         )
     return solved

@@ -7,7 +7,6 @@ rationals and rounded once, which makes the charts of thin or tiny triangles as 
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -302,7 +301,7 @@ def _independence(contests: list[list[Any]]) -> float:
     for cubic, gradients in zip(contests, controls, strict=True):
         gradient_controls(np.array([rounded(x) for x in cubic]), gradients)
     largest = np.abs(controls).max(axis=(1, 2))
-    return abs(float(hull_determinant(controls[0], controls[1], 0.0, 0.0))) / math.prod(largest)
+    return abs(float(hull_determinant(controls[0], controls[1], 0.0, 0.0))) / float(largest.prod())
 
 
 def _newton(f: Floats, g: Floats, start: Sequence[float]) -> Weights | None:

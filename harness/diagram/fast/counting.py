@@ -12,7 +12,8 @@ import numpy as np
 from harness.diagram.counts import Counts, Domain, Objective
 from harness.diagram.fast import chains, domains
 from harness.diagram.fast.arrays import Arrays, CornerNode, glued, joined
-from harness.diagram.fast.build import Leaves, candidates_of, find_leaves, solve_open
+from harness.diagram.fast.build import Leaves, candidates_of, find_leaves, open_rows, solve_open
+from harness.diagram.fast.decisions import decide_open
 from harness.diagram.fast.hard import LocalMap
 from harness.diagram.fast.nodes import (
     AT_INFINITY,
@@ -182,10 +183,12 @@ def _attempt(
         if new <= ties:
             break
         ties |= new
-    still_open = int(leaves.statistics[2] + leaves.statistics[3])
+    rows_open = open_rows(leaves)
+    by_balls = decide_open(prepared.instance, roots, leaves, sense)
+    still_open = int(leaves.statistics[2] + leaves.statistics[3]) - by_balls
     if still_open > (FEW_OPEN if prepared.instance.n <= SMALL else MOST_OPEN):
         raise Hopeless(f"{still_open} triangles need algebra")
-    solved = solve_open(prepared, roots, leaves, domain, objective)
+    solved = solve_open(prepared, roots, leaves, rows_open, domain, objective)
     arrays = glued(roots, leaves, solved)
     nodes = find_nodes(prepared, roots, leaves, arrays, domain == "plane")
     edges, edge_of_arc = joined(arrays, nodes.of_port)
@@ -212,8 +215,8 @@ def _attempt(
             triangles=int(leaves.statistics[0]),
             tests=int(leaves.statistics[1]),
             leaves=len(leaves.kinds),
-            by_floats=len(leaves.kinds) - len(solved),
-            by_balls=0,
+            by_floats=len(leaves.kinds) - len(solved) - by_balls,
+            by_balls=by_balls,
             exactly=len(solved),
             workers=workers,
         ),

@@ -18,7 +18,7 @@ Point = tuple[float, float]
 
 #: Halvings of a stretch of an edge at most.
 _DEEPEST = 40
-#: Relative to the coordinates: neighbouring leaves find their common port each on their own.
+#: Relative to the coordinates: how far apart points are that cannot well be told apart.
 _SAME = 1e-14
 
 
@@ -37,8 +37,8 @@ class ArcCourse:
         """See :meth:`harness.diagram.planar_map.Edge.polyline`.
 
         All points lie on the edge up to rounding; its ends are the nodes' points.  A piece is
-        halved until its middle is within ``tolerance`` of its chord; that the rest of the piece
-        is, too, is not proved.  Raises ValueError if the tolerance is not positive.
+        halved until its middle is within ``tolerance`` of its chord (or as near as doubles can
+        tell); that the rest of the piece is, too, is not proved.  Raises ValueError if the tolerance is not positive.
         """
         if not tolerance > 0:
             raise ValueError("the tolerance must be positive")
@@ -164,7 +164,8 @@ def _refined(arc: LeafArc, low: float, high: float, tolerance: float) -> Iterato
         a, p, b, q, depth = waiting.pop()
         middle = (a + b) / 2
         m = arc.point(middle)
-        if (depth >= 1 and _distance_to_chord(m, p, q) <= tolerance) or depth == _DEEPEST:
+        enough = max(tolerance, _SAME * (abs(m[0]) + abs(m[1])))
+        if (depth >= 1 and _distance_to_chord(m, p, q) <= enough) or depth == _DEEPEST:
             yield m
             yield q
         else:

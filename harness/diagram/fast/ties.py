@@ -7,8 +7,7 @@ from itertools import combinations
 
 import numpy as np
 
-from harness.diagram.fast.build import Leaves
-from harness.diagram.fast.leaves import EMPTY, HARD
+from harness.diagram.fast.build import Leaves, open_rows
 from harness.diagram.fast.prepare import Ints
 from harness.diagram.fast.roots import Roots
 from harness.diagram.planar_map import RationalPoint
@@ -20,11 +19,9 @@ Ties = set[tuple[int, int, int, int]]
 
 def ties_at_corners(instance: Instance, roots: Roots, leaves: Leaves) -> Ties:
     """Pairs of candidates of hard leaves whose F is zero at a corner of a root in that leaf."""
-    shaped = np.flatnonzero(leaves.kinds != EMPTY)
-    is_open = np.flatnonzero((leaves.kinds[shaped] == HARD) | (leaves.choices[shaped] < 0))
     found: Ties = set()
     seen: set[tuple[int, int, int]] = set()
-    for number, row in enumerate(is_open.tolist()):
+    for number, row in enumerate(open_rows(leaves).tolist()):
         ids = leaves.open_ids[leaves.open_first[number] : leaves.open_first[number + 1]].tolist()
         shape = leaves.shapes[row].reshape(3, 3)
         for k in range(3):
