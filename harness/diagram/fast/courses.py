@@ -38,7 +38,9 @@ class ArcCourse:
 
         All points lie on the edge up to rounding; its ends are the nodes' points.  A piece is
         halved until its middle is within ``tolerance`` of its chord (or as near as doubles can
-        tell); that the rest of the piece is, too, is not proved.  Raises ValueError if the tolerance is not positive.
+        tell); that the rest of the piece is, too, is not proved.
+
+        Raises ValueError if the tolerance is not positive.
         """
         if not tolerance > 0:
             raise ValueError("the tolerance must be positive")

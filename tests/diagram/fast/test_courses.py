@@ -8,11 +8,20 @@ import numpy as np
 import pytest
 
 from harness.diagram import build
+from harness.diagram.fast.counting import fast_diagram
 from harness.diagram.fast.courses import ArcCourse
 from harness.diagram.planar_map import PlanarMap
 from harness.geometry.visual_angle import visual_angle
-from tests.diagram.fast.both_builders import CASES, Points, both, distance, partner, size_of
-from tests.diagram.support import segments
+from tests.diagram.fast.both_builders import (
+    CASES,
+    HEPTAGON,
+    Points,
+    both,
+    distance,
+    partner,
+    size_of,
+)
+from tests.diagram.support import polygon, segments
 
 
 @pytest.fixture(scope="module", params=CASES)
@@ -109,6 +118,14 @@ def test_a_tolerance_is_positive() -> None:
     fast, _ = both("star")
     with pytest.raises(ValueError, match="positive"):
         fast.edges[0].polyline(0.0)
+
+
+def test_refinement_ends_where_doubles_do() -> None:
+    far = 2**40
+    moved = [(x + far, y - 3 * far) for x, y in HEPTAGON.floats.tolist()]
+    fast = fast_diagram(polygon(*moved), "kernel", "smallest", workers=1)
+    for edge in range(len(fast.edges)):
+        assert len(ArcCourse(fast, edge).polyline(1e-9)) < 2_000
 
 
 @pytest.mark.parametrize("offset", [0.0, 2.0**-40, 2.0**-20])
