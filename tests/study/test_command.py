@@ -165,6 +165,6 @@ def test_a_map_that_fails_its_check_is_no_ok_row(monkeypatch: pytest.MonkeyPatch
         def sanity_check(self) -> None:
             raise UserError("edge 3 has no twin")
 
-    monkeypatch.setattr("harness.study.worker.build", lambda *_: Wrong())
+    monkeypatch.setattr("harness.study.worker.build", lambda *_, **__: Wrong())
     with pytest.raises(SanityError, match="edge 3 has no twin"):
         execute(study().tasks[0])

@@ -10,6 +10,7 @@ import numpy as np
 from harness.diagram.counts import Domain, Objective
 from harness.diagram.fast.counting import FastDiagram, fast_diagram
 from harness.diagram.fast.courses import ArcCourse
+from harness.diagram.fast.leaves import TRIPLE
 from harness.diagram.fast.locate import FastLocator, witnesses
 from harness.diagram.fast.nodes import KINDS, owners_around, vertex_points
 from harness.diagram.fast.places import node_point, place_of
@@ -108,7 +109,10 @@ class _Parts:
         diagram, arrays, nodes = self.diagram, self.diagram.arrays, self.diagram.nodes
         result: list[Node] = []
         points = vertex_points(diagram.roots, diagram.leaves, arrays)
+        kinds = diagram.leaves.kinds[arrays.vertices[:, 0]].tolist()
         for v, point in enumerate(points.tolist()):
+            if kinds[v] != TRIPLE and v not in arrays.special:
+                point = node_point(diagram, v)
             special = arrays.special.get(v)
             if special is not None:
                 result.append(special)
