@@ -1,27 +1,31 @@
 """A leaf's triangle as a chart: its corners and forms exactly, ports and vertices in it.
 
 Points of the triangle are given by barycentric weights λ (summing to 1) of its homogeneous corners
-(x, y, w), so that corners at infinity (w = 0) are nothing special.  Everything is computed in
-rationals and rounded once, which makes the charts of thin or tiny triangles as good as others.
+(x, y, w), so that corners at infinity (w = 0) are nothing special.  Everything is computed exactly
+and rounded once, which makes the charts of thin or tiny triangles as good as others.  All is scaled
+to integers first: rationals spend their time on common divisors.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import math
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property
 from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
-from flint import fmpq, fmpq_poly
+from flint import fmpq_poly, fmpz
 
+from harness.diagram.fast.common_zeros import common_zero, independence
 from harness.diagram.fast.counting import FastDiagram
-from harness.diagram.fast.forms import SIDES, STEPS, gradient_controls, value_and_gradient
-from harness.diagram.fast.leaves import CROSSING, EMPTY, hull_determinant
+from harness.diagram.fast.forms import SIDES, STEPS
+from harness.diagram.fast.leaves import CROSSING, EMPTY
 from harness.diagram.fast.prepare import Floats, Ints
 from harness.diagram.fast.univariate import from_bernstein, zeros_inside
+from harness.diagram.planar_map import RationalPoint
 from harness.diagram.roots import real_root_balls
-from harness.geometry.exact import fraction, point, rational, sign
+from harness.geometry.exact import sign
 
 #: Barycentric weights.
 Weights = tuple[float, float, float]
@@ -43,8 +47,6 @@ _PRODUCTS = (
 )
 #: Pairs of corners in the order 200, 020, 002, 110, 101, 011.
 _SQUARES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
-#: Starts of Newton's method if the leaf's own fails.
-_STARTS = [((k + 0.5) / 8, (m + 0.5) / 8) for k in range(8) for m in range(8 - k)]
 
 _rows: WeakKeyDictionary[FastDiagram, Ints] = WeakKeyDictionary()
 
@@ -56,9 +58,20 @@ def rows_of_leaves(diagram: FastDiagram) -> Ints:
     return _rows[diagram]
 
 
-def rounded(value: Any) -> float:
-    """The double nearest to a flint rational."""
-    return float(fraction(value))
+def rounded(values: Iterable[Any]) -> list[float]:
+    """Integers divided by the power of two that brings the greatest near 1, as doubles."""
+    whole = [int(value) for value in values]
+    size = 1 << max(value.bit_length() for value in whole)
+    return [value / size for value in whole]
+
+
+def _integers(points: Sequence[RationalPoint]) -> tuple[list[tuple[Any, Any]], Any]:
+    """Points times the least number that makes all coordinates integers, and that number."""
+    unit = math.lcm(*(c.denominator for p in points for c in p))
+    return [
+        (fmpz(x.numerator * (unit // x.denominator)), fmpz(y.numerator * (unit // y.denominator)))
+        for x, y in points
+    ], fmpz(unit)
 
 
 class PortOnSide(NamedTuple):
@@ -84,24 +97,32 @@ class Chart:
         self.row = int(rows_of_leaves(diagram)[leaf])
         roots, leaves = diagram.roots, diagram.leaves
         triangle = roots.triangles[leaves.shape_roots[self.row]].tolist()
+        ends, unit = _integers([roots.corners.exact[c] for c in triangle])
         of_root = [
-            (*point(roots.corners.exact[c]), rational(roots.corners.weights[c])) for c in triangle
+            (*end, unit if roots.corners.weights[c] else fmpz(0))
+            for end, c in zip(ends, triangle, strict=True)
         ]
-        shape = [[rational(x) for x in line] for line in leaves.shapes[self.row].reshape(3, 3)]
-        #: The corners (x, y, w), exactly.
+        # Weights are multiples of a power of two.
+        finest = max(x.as_integer_ratio()[1] for x in leaves.shapes[self.row].tolist())
+        shape = [
+            [fmpz(int(x * finest)) for x in line]
+            for line in leaves.shapes[self.row].reshape(3, 3).tolist()
+        ]
+        #: The corners (x, y, w), times ``unit``: integers.
         self.corners = [
             tuple(
-                sum((f * c[axis] for f, c in zip(line, of_root, strict=True)), fmpq(0))
+                sum((f * c[axis] for f, c in zip(line, of_root, strict=True)), fmpz(0))
                 for axis in range(3)
             )
             for line in shape
         ]
-        self._forms: dict[int, list[Any]] = {}
+        self.unit = int(unit) * finest
+        self._forms: dict[int, tuple[list[Any], int]] = {}
 
     @cached_property
     def rounded_corners(self) -> Floats:
-        """The corners as doubles, (3, 3)."""
-        return np.array([[rounded(c) for c in corner] for corner in self.corners])
+        """The corners (x, y, w) as doubles, (3, 3)."""
+        return np.array([[int(c) / self.unit for c in corner] for corner in self.corners])
 
     def plane(self, weights: Weights) -> tuple[float, float]:
         """The point of the plane with given weights; at infinity its direction, of length 1."""
@@ -113,18 +134,31 @@ class Chart:
     # -- forms ----------------------------------------------------------------------------------
 
     def forms(self, segment: int) -> list[Any]:
-        """L₀ L₁ L₂ q₀₀ q₁₁ q₂₂ q₀₁ q₀₂ q₁₂ of a segment, exactly."""
+        """L₀ L₁ L₂ q₀₀ q₁₁ q₂₂ q₀₁ q₀₂ q₁₂ of a segment, exactly, times positive integers.
+
+        Those are 2·scale²·unit for L and 2·scale²·unit² for q, where the segment times scale has
+        integer coordinates.
+        """
+        return self._scaled_forms(segment)[0]
+
+    def rounded_forms(self, segment: int) -> list[float]:
+        """The same as doubles, not scaled."""
+        table, scale = self._scaled_forms(segment)
+        one = 2 * scale**2 * self.unit
+        return [int(x) / (one if k < 3 else one * self.unit) for k, x in enumerate(table)]
+
+    def _scaled_forms(self, segment: int) -> tuple[list[Any], int]:
         if segment not in self._forms:
-            a, b = (point(end) for end in self.diagram.instance.rational_segment(segment))
+            (a, b), scale = _integers(self.diagram.instance.rational_segment(segment))
             d = b[0] - a[0], b[1] - a[1]
-            to_a = [(a[0] * w - x, a[1] * w - y) for x, y, w in self.corners]
-            to_b = [(b[0] * w - x, b[1] * w - y) for x, y, w in self.corners]
-            table = [p[0] * d[1] - p[1] * d[0] for p in to_a]
+            to_a = [(a[0] * w - scale * x, a[1] * w - scale * y) for x, y, w in self.corners]
+            to_b = [(b[0] * w - scale * x, b[1] * w - scale * y) for x, y, w in self.corners]
+            table = [2 * (p[0] * d[1] - p[1] * d[0]) for p in to_a]
             for k, m in _SQUARES:
                 one = to_a[k][0] * to_b[m][0] + to_a[k][1] * to_b[m][1]
                 two = to_a[m][0] * to_b[k][0] + to_a[m][1] * to_b[k][1]
-                table.append((one + two) / 2)
-            self._forms[segment] = table
+                table.append(one + two)
+            self._forms[segment] = table, int(scale)
         return self._forms[segment]
 
     def side_of_line(self, segment: int) -> int:
@@ -145,7 +179,9 @@ class Chart:
         return (both,) if both else (1, -1)
 
     def cubic(self, i: int, j: int, which: int) -> list[Any]:
-        """The ten Bernstein coefficients of F^± of two segments, exactly; see :meth:`signs`.
+        """The ten Bernstein coefficients of F^± of two segments; see :meth:`signs`.
+
+        Exactly, times one positive number that makes them integers.
 
         If it vanishes at infinity, which is a side of the triangle, then of what is left of it
         divided by w, raised to degree three.
@@ -157,26 +193,25 @@ class Chart:
         result = [
             sum(
                 (weight * (t[q] * s[line] - which * s[q] * t[line]) for weight, q, line in terms),
-                fmpq(0),
+                fmpz(0),
             )
-            / 3
             for terms in _PRODUCTS
         ]
         for k in range(3):
             far = all(self.corners[c][2] == 0 for c in range(3) if c != k)
             if far and all(result[c] == 0 for c in SIDES[k]):
                 quadratic = [
-                    result[STEPS[r, k]] * 3 / (1 + corners.count(k))
+                    result[STEPS[r, k]] * (6 // (1 + corners.count(k)))
                     for r, corners in enumerate(_SQUARES)
                 ]
                 return _raised(quadratic)
         return result
 
     def _length(self, segment: int) -> Any:
-        """The length of a segment in units that all segments on its line share, exactly."""
-        a, b = (point(end) for end in self.diagram.instance.rational_segment(segment))
-        dx, dy = abs(b[0] - a[0]), abs(b[1] - a[1])
-        return dx or dy
+        """The length of a segment in units that all segments on its line share, times the square of
+        its scale."""
+        (a, b), scale = _integers(self.diagram.instance.rational_segment(segment))
+        return scale * (abs(b[0] - a[0]) or abs(b[1] - a[1]))
 
     # -- ports ----------------------------------------------------------------------------------
 
@@ -200,7 +235,7 @@ class Chart:
         zeros = sorted(
             (t, which)
             for which, exact in self._on_side(port, position)
-            for t in zeros_inside([rounded(c) for c in exact])
+            for t in zeros_inside(rounded(exact))
         )
         if index >= len(zeros):
             raise ArithmeticError(f"port {port} is no zero of its pair's curves")
@@ -243,33 +278,34 @@ class Chart:
                 self.cubic(one, other, self.signs(one, other)[0]) for other in tied if other != one
             ]
 
-        return max((contests(one) for one in tied), key=_independence)
+        return max(
+            (contests(one) for one in tied),
+            key=lambda pair: independence(np.array([rounded(cubic) for cubic in pair])),
+        )
 
     @property
     def is_crossing(self) -> bool:
         """Whether the leaf holds the common point of two segments' lines."""
         return bool(self.diagram.leaves.kinds[self.leaf] == CROSSING)
 
-    def crossing(self) -> tuple[Any, Any, Any]:
-        """The weights of the common point of the lines of a crossing leaf, exactly."""
+    def _crossing(self) -> Weights:
+        """The weights of the common point of the lines of a crossing leaf."""
         arrays = self.diagram.arrays
         base = int(arrays.start[self.leaf])
         f, g = (self.forms(int(arrays.owner[base + k]))[:3] for k in range(2))
-        common = [f[k - 2] * g[k - 1] - f[k - 1] * g[k - 2] for k in range(3)]
-        total = sum(common, fmpq(0))
+        common = [int(f[k - 2] * g[k - 1] - f[k - 1] * g[k - 2]) for k in range(3)]
+        total = sum(common)
         return common[0] / total, common[1] / total, common[2] / total
 
     def vertex(self, vertex: int) -> Weights:
         """The weights of a vertex of the leaf, as doubles."""
         if self.is_crossing:
-            one, two, three = (rounded(x) for x in self.crossing())
-            return one, two, three
-        f, g = (np.array([rounded(x) for x in cubic]) for cubic in self.contests_at(vertex))
-        for start in (self.diagram.leaves.points[self.row].tolist(), *_STARTS):
-            found = _newton(f, g, start)
-            if found is not None:
-                return found
-        raise ArithmeticError(f"no vertex was found in leaf {self.leaf}")
+            return self._crossing()
+        f, g = (np.array(rounded(cubic)) for cubic in self.contests_at(vertex))
+        found = common_zero(f, g, self.diagram.leaves.points[self.row].tolist())
+        if found is None:
+            raise ArithmeticError(f"no vertex was found in leaf {self.leaf}")
+        return found
 
     def end(self, arc: int, half: int) -> Weights:
         """The weights of an end of an arc."""
@@ -286,43 +322,10 @@ class Chart:
 
 
 def _raised(g: list[Any]) -> list[Any]:
-    """The cubic Bernstein coefficients of a quadratic form 200, 020, 002, 110, 101, 011."""
+    """Thrice the cubic Bernstein coefficients of a quadratic form 200, 020, 002, 110, 101, 011."""
     return [
-        g[0], g[1], g[2],
-        (g[0] + 2 * g[3]) / 3, (g[0] + 2 * g[4]) / 3, (g[1] + 2 * g[3]) / 3,
-        (g[1] + 2 * g[5]) / 3, (g[2] + 2 * g[4]) / 3, (g[2] + 2 * g[5]) / 3,
-        (g[3] + g[4] + g[5]) / 3,
+        3 * g[0], 3 * g[1], 3 * g[2],
+        g[0] + 2 * g[3], g[0] + 2 * g[4], g[1] + 2 * g[3],
+        g[1] + 2 * g[5], g[2] + 2 * g[4], g[2] + 2 * g[5],
+        g[3] + g[4] + g[5],
     ]  # fmt: skip
-
-
-def _independence(contests: list[list[Any]]) -> float:
-    """The least |det| of gradients of two cubics over the triangle, relative to their sizes."""
-    controls = np.zeros((2, 6, 2))
-    for cubic, gradients in zip(contests, controls, strict=True):
-        gradient_controls(np.array([rounded(x) for x in cubic]), gradients)
-    largest = np.abs(controls).max(axis=(1, 2))
-    return abs(float(hull_determinant(controls[0], controls[1], 0.0, 0.0))) / float(largest.prod())
-
-
-def _newton(f: Floats, g: Floats, start: Sequence[float]) -> Weights | None:
-    """The common zero of two cubics in the triangle to which Newton's method leads, if any."""
-    x, y = start
-    out = np.zeros(3)
-    step = 1.0
-    for _ in range(40):
-        value_and_gradient(f, x, y, out)
-        u, ux, uy = out.tolist()
-        value_and_gradient(g, x, y, out)
-        v, vx, vy = out.tolist()
-        det = ux * vy - uy * vx
-        if det == 0.0:
-            return None
-        dx, dy = (u * vy - v * uy) / det, (v * ux - u * vx) / det
-        x, y = x - dx, y - dy
-        if not (abs(x) < 4.0 and abs(y) < 4.0):
-            return None
-        step = abs(dx) + abs(dy)
-        if step < 1e-15:
-            break
-    z = 1.0 - x - y
-    return (z, x, y) if min(x, y, z) > -1e-12 and step < 1e-9 else None

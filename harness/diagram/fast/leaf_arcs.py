@@ -30,10 +30,10 @@ class LeafArc:
         self.pair = int(arrays.owner[arrays.arcs[arc, 2]]), int(arrays.owner[arrays.arcs[arc, 3]])
         self.ends = chart.end(arc, 0), chart.end(arc, 1)
         self.which = self._which() if which is None else which
-        cubic = [rounded(c) for c in chart.cubic(*self.pair, self.which)]
+        cubic = rounded(chart.cubic(*self.pair, self.which))
         self._coefficients: Floats = np.array(cubic)
         self.stretches = stretches_between(cubic, *self.ends)
-        self._forms = [[rounded(x) for x in chart.forms(k)] for k in self.pair]
+        self._forms = [chart.rounded_forms(k) for k in self.pair]
         self._w: list[float] = chart.rounded_corners[:, 2].tolist()
 
     def _which(self) -> int:
@@ -136,13 +136,12 @@ class LeafArc:
         if place % 2:
             return self._jet(self.ends[end])[0]
         corner = place // 2
-        for k in self.pair:
-            form = self.chart.forms(k)
+        for form in self._forms:
             line, q = form[corner], form[3 + corner]
             if line != 0:
-                return rounded(q / (abs(line) * self.chart.corners[corner][2]))
+                return q / (abs(line) * self._w[corner])
             if q != 0:
-                return math.copysign(math.inf, rounded(q))
+                return math.copysign(math.inf, q)
         return self._limit_at_endpoint(corner, end)
 
     def _limit_at_endpoint(self, corner: int, end: int) -> float:

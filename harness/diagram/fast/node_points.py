@@ -16,6 +16,7 @@ from harness.diagram.fast.prepare import Floats, Ints
 from harness.diagram.planar_map import Node, RationalPoint
 from harness.geometry.exact import fraction, point
 
+Extended = NDArray[np.longdouble]
 #: Polished points of ties, one row for every vertex; NaN where that failed.
 _ties: WeakKeyDictionary[FastDiagram, Floats] = WeakKeyDictionary()
 _STEPS = 6
@@ -75,30 +76,26 @@ def _polished(diagram: FastDiagram) -> Floats:
     ties = np.flatnonzero(leaves.kinds[arrays.vertices[:, 0]] == TRIPLE)
     leaf = arrays.vertices[ties, 0]
     ends = diagram.instance.segments[arrays.owner[arrays.start[leaf][:, None] + np.arange(3)]]
-    p = vertex_points(diagram.roots, leaves, arrays)[ties]
+    # Extended precision, where there is any, for the noise of contests that nearly agree.
+    ends = ends.astype(np.longdouble)
+    p = vertex_points(diagram.roots, leaves, arrays)[ties].astype(np.longdouble)
     step = np.zeros_like(p)
     with np.errstate(all="ignore"):
         for _ in range(_STEPS):
             value, slope = _contests(ends, p)
-            step = (
-                np.stack(
-                    [
-                        value[:, 0] * slope[:, 1, 1] - value[:, 1] * slope[:, 0, 1],
-                        value[:, 1] * slope[:, 0, 0] - value[:, 0] * slope[:, 1, 0],
-                    ],
-                    axis=1,
-                )
-                / np.linalg.det(slope)[:, None]
-            )
+            (a, b), (c, e) = np.moveaxis(slope, 0, 2)
+            u, v = value.T
+            step = np.stack([u * e - v * b, v * a - u * c], axis=1) / (a * e - b * c)[:, None]
             p = p - step
     size = float(np.ptp(diagram.instance.segments.reshape(-1, 2), axis=0).max())
     small = np.abs(step).max(axis=1, initial=0.0) < _LAST_STEP * size
-    good = small & _is_inside(diagram, leaf, p)
-    result[ties[good]] = p[good]
+    points = p.astype(np.float64)
+    good = small & _is_inside(diagram, leaf, points)
+    result[ties[good]] = points[good]
     return result
 
 
-def _contests(ends: Floats, p: Floats) -> tuple[Floats, Floats]:
+def _contests(ends: Extended, p: Extended) -> tuple[Extended, Extended]:
     """F_01 and F_02 of three segments (k, 3, 2, 2) at points (k, 2): values (k, 2), gradients
     (k, 2, 2)."""
     to_a, to_b = ends[:, :, 0] - p[:, None], ends[:, :, 1] - p[:, None]
