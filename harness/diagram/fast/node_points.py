@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from harness.diagram.fast.arrays import Arrays
 from harness.diagram.fast.chart import Chart, rows_of_leaves
 from harness.diagram.fast.counting import FastDiagram
-from harness.diagram.fast.leaves import CROSSING, TRIPLE
+from harness.diagram.fast.leaves import CROSSING, QUAD, TRIPLE
 from harness.diagram.fast.nodes import vertex_points
 from harness.diagram.fast.prepare import Floats, Ints
 from harness.diagram.planar_map import Node, RationalPoint
@@ -54,7 +54,7 @@ def _vertex_point(diagram: FastDiagram, vertex: int) -> tuple[float, float]:
     if kind == CROSSING:
         x, y = crossing(diagram, leaf)
         return float(x), float(y)
-    if kind == TRIPLE:
+    if kind in (TRIPLE, QUAD):
         if diagram not in _ties:
             _ties[diagram] = _polished(diagram)
         x, y = _ties[diagram][vertex].tolist()
@@ -73,9 +73,13 @@ def _polished(diagram: FastDiagram) -> Floats:
     result = np.full((len(arrays.vertices), 2), np.nan)
     if diagram.instance.exact is not None:
         return result  # the endpoints are no doubles
-    ties = np.flatnonzero(leaves.kinds[arrays.vertices[:, 0]] == TRIPLE)
-    leaf = arrays.vertices[ties, 0]
-    ends = diagram.instance.segments[arrays.owner[arrays.start[leaf][:, None] + np.arange(3)]]
+    kind = leaves.kinds[arrays.vertices[:, 0]]
+    ties = np.flatnonzero((kind == TRIPLE) | (kind == QUAD))
+    leaf, second = arrays.vertices[ties].T
+    # The first and second vertex of a quad lie between three consecutive pieces each.
+    first = np.where(kind[ties] == QUAD, 2 * second - leaves.choices[leaf], 0)
+    pieces = (first[:, None] + np.arange(3)) % np.where(kind[ties] == QUAD, 4, 3)[:, None]
+    ends = diagram.instance.segments[arrays.owner[arrays.start[leaf][:, None] + pieces]]
     # Extended precision, where there is any, for the noise of contests that nearly agree.
     ends = ends.astype(np.longdouble)
     p = vertex_points(diagram.roots, leaves, arrays)[ties].astype(np.longdouble)
