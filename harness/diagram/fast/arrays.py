@@ -169,6 +169,8 @@ def corner_nodes(roots: Roots, leaves: Leaves, arrays: Arrays) -> list[CornerNod
         if mine.max() != 1.0:
             raise Contradiction("an edge ends at a corner that is not special")
         corner = int(roots.triangles[root, int(mine.argmax())])
+        if not roots.corners.special[corner]:
+            raise Contradiction("an edge passes through a free point")
         at[corner].append((_heading(roots, root, corner, shape), leaf, port))
     # Ports of one leaf at its corner come in the order of a walk inside, that is clockwise.
     return [

@@ -68,6 +68,16 @@ def _ties_once(a, b, c, w):
 
 
 @compiled
+def _meet_where_all_tie(w):
+    """The common zero of two cubics that have no other: a special corner may be one of the rest."""
+    for x, y, z in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        i, j, k, n = min(x, y), max(x, y), min(x, z), max(x, z)
+        if hull_determinant(w[3][i, j], w[3][k, n], w[2][i, j], w[2][k, n]) != 0.0:
+            meet(w[0][i, j], w[0][k, n], w[6], w[5])
+            return
+
+
+@compiled
 def is_blurred(m, w):
     """Whether rounding blurs some F beyond what halving can mend: all of it is near its bound."""
     for a in range(m):
@@ -122,7 +132,7 @@ def classify_definite(m, w):
         if ports == 2:
             return ARC, 2, 0
         if ports == 3 and p0 != p1 and p1 != p2 and p0 != p2:
-            meet(w[0][p0, p1], w[0][p0, p2], w[6], w[5])
+            _meet_where_all_tie(w)
             return TRIPLE, 3, 0
         if ports == 4 and p0 == p2 and p1 != p3:
             return TWO_ARCS, 4, 1

@@ -10,9 +10,8 @@ import numpy as np
 from harness.diagram.counts import Domain, Objective
 from harness.diagram.fast.counting import FastDiagram, fast_diagram
 from harness.diagram.fast.courses import ArcCourse
-from harness.diagram.fast.leaves import TRIPLE
 from harness.diagram.fast.locate import FastLocator, witnesses
-from harness.diagram.fast.nodes import KINDS, owners_around, vertex_points
+from harness.diagram.fast.nodes import KINDS, owners_around
 from harness.diagram.fast.places import node_point, place_of
 from harness.diagram.fast.walks import Walks
 from harness.diagram.planar_map import Cell, Edge, Node, PlanarMap, RationalPoint, Walk, Wall
@@ -108,11 +107,7 @@ class _Parts:
         """All nodes."""
         diagram, arrays, nodes = self.diagram, self.diagram.arrays, self.diagram.nodes
         result: list[Node] = []
-        points = vertex_points(diagram.roots, diagram.leaves, arrays)
-        kinds = diagram.leaves.kinds[arrays.vertices[:, 0]].tolist()
-        for v, point in enumerate(points.tolist()):
-            if kinds[v] != TRIPLE and v not in arrays.special:
-                point = node_point(diagram, v)
+        for v in range(len(arrays.vertices)):
             special = arrays.special.get(v)
             if special is not None:
                 result.append(special)
@@ -122,7 +117,7 @@ class _Parts:
             segments = tuple(sorted({int(k) for k in around.ravel()}))
             kind = KINDS[nodes.kind[v]]
             result.append(
-                Node(kind, (point[0], point[1]), segments, len(halves), False, _Later(diagram, v))
+                Node(kind, node_point(diagram, v), segments, len(halves), False, _Later(diagram, v))
             )
         for corner in nodes.corners:
             k = len(result)
