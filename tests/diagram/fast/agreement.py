@@ -26,7 +26,7 @@ from harness.geometry.formats import parse_instance
 from harness.geometry.instance import Instance
 from harness.geometry.validation import validate
 from tests.diagram.fast.sources import SOURCES, instance
-from tests.diagram.same_map import differences
+from tests.diagram.same_map import TOLERANCE, differences
 
 #: Seconds for both builds of one small instance.
 PATIENCE = 60.0
@@ -65,10 +65,12 @@ def cases(source: str, seed: int, count: int, domain: Domain | None = None) -> I
                 yield from (Case(made, its, objective) for objective in OBJECTIVES)
 
 
-def disagreements(case: Case, builder: str = "fast", judge: str = "reference") -> list[str]:
+def disagreements(
+    case: Case, builder: str = "fast", judge: str = "reference", tolerance: float = TOLERANCE
+) -> list[str]:
     """What is wrong with a builder's map of a case, in words; nothing if the judge has it too.
 
-    A domain that both refuse is no disagreement.
+    A domain that both refuse is no disagreement.  ``tolerance``: see :mod:`tests.diagram.same_map`.
     """
     arguments = case.instance, case.domain, case.objective
     try:
@@ -88,13 +90,15 @@ def disagreements(case: Case, builder: str = "fast", judge: str = "reference") -
         )
         if mine != theirs and name != "builder"
     ]
-    return wrong + differences(found, expected)
+    # Without places the matching may exchange alike cells, so where they lie says nothing.
+    seen = tolerance < 1
+    return wrong + differences(found, expected, tolerance=tolerance, witnesses=seen)
 
 
-def examined(case: Case, builder: str = "fast") -> list[str]:
+def examined(case: Case, builder: str = "fast", tolerance: float = TOLERANCE) -> list[str]:
     """As :func:`disagreements`, with an error as the only difference."""
     try:
-        return disagreements(case, builder)
+        return disagreements(case, builder, tolerance=tolerance)
     except Exception as error:  # any failure of a builder is what is looked for
         return [f"{type(error).__name__}: {error}"]
 
@@ -148,18 +152,21 @@ def _domain_exists(case: Case) -> bool:
 # --- the long run --------------------------------------------------------------------------------
 
 
-def _examined_together(batch: list[Case], builder: str) -> list[list[str]]:
-    return [examined(case, builder) for case in batch]
+def _examined_together(batch: list[Case], builder: str, tolerance: float) -> list[list[str]]:
+    return [examined(case, builder, tolerance) for case in batch]
 
 
 def failures(
-    every: Sequence[Case], builder: str, jobs: int, patience: float
+    every: Sequence[Case], builder: str, jobs: int, patience: float, tolerance: float
 ) -> Iterator[tuple[Case, list[str]]]:
     """The cases that fail, in processes of their own that may hang or die."""
     batches = [list(every[k : k + 6]) for k in range(0, len(every), 6)]
     with ProcessPool(max_workers=jobs) as pool:
         waiting = [
-            (batch, pool.schedule(_examined_together, args=(batch, builder), timeout=patience))
+            (
+                batch,
+                pool.schedule(_examined_together, (batch, builder, tolerance), timeout=patience),
+            )
             for batch in batches
         ]
         for batch, future in waiting:
@@ -182,6 +189,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--builder", default="fast")
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--timeout", type=float, default=PATIENCE, help="seconds for six builds")
+    parser.add_argument(
+        "--tolerance", type=float, default=TOLERANCE, help="of places; 10 compares no places"
+    )
     parser.add_argument("--most", type=int, default=5, help="failures written for each source")
     parser.add_argument("--shrink", action="store_true", help="also write smaller cases")
     parser.add_argument("--out", type=Path, default=Path(), help="where failures are written")
@@ -194,7 +204,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         start = time.perf_counter()
         every = list(cases(source, options.seed, options.count, options.domain))
         failed = 0
-        for case, found in failures(every, options.builder, options.jobs, options.timeout):
+        limits = options.jobs, options.timeout, options.tolerance
+        for case, found in failures(every, options.builder, *limits):
             failed += 1
             if failed <= options.most:
                 name = f"fail-{source}-{options.seed}-{failed}.json"
