@@ -166,7 +166,7 @@ def corner_nodes(roots: Roots, leaves: Leaves, arrays: Arrays) -> list[CornerNod
         root = int(leaves.shape_roots[row])
         shape = leaves.shapes[row].reshape(3, 3)
         mine = shape[arrays.place[port] // 2]
-        if mine.max() != 1.0:
+        if np.count_nonzero(mine) != 1:
             raise Contradiction("an edge ends at a corner that is not special")
         corner = int(roots.triangles[root, int(mine.argmax())])
         if not roots.corners.special[corner]:

@@ -34,7 +34,11 @@ World = tuple[Ints, Floats, Ints, Ints, Ints]
 
 @dataclass(eq=False)
 class Leaves:
-    """All leaves of all roots, in the order of ``order``; see :func:`subdivide`."""
+    """All leaves of all roots, in the order of ``order``; see :func:`subdivide`.
+
+    ``shapes`` (l, 9): the barycentric weights of the corners of the leaves that are not empty,
+    ``lows`` what is missing in these doubles.
+    """
 
     order: Ints
     tokens: Any
@@ -43,11 +47,18 @@ class Leaves:
     first_slot: Ints
     slots: Any
     shapes: Floats
+    lows: Floats
     points: Floats
     shape_roots: Any
     open_first: Ints
     open_ids: Ints
     statistics: Ints
+
+    def weights(self, row: int) -> list[list[Fraction]]:
+        """The exact barycentric weights of the corners of a leaf that is not empty."""
+        pairs = zip(self.shapes[row].tolist(), self.lows[row].tolist(), strict=True)
+        exact = [Fraction(high) + Fraction(low) for high, low in pairs]
+        return [exact[3 * k : 3 * k + 3] for k in range(3)]
 
 
 @dataclass(frozen=True)
@@ -87,11 +98,12 @@ def merged(parts: list[Any], jobs: list[Job]) -> Leaves:
         first_slot=offsets(3),
         slots=joined(4),
         shapes=joined(5),
-        points=joined(6),
-        shape_roots=joined(7),
-        open_first=offsets(8),
-        open_ids=joined(9),
-        statistics=np.sum([part[10] for part in parts], axis=0),
+        lows=joined(6),
+        points=joined(7),
+        shape_roots=joined(8),
+        open_first=offsets(9),
+        open_ids=joined(10),
+        statistics=np.sum([part[11] for part in parts], axis=0),
     )
 
 
@@ -105,7 +117,9 @@ def find_leaves(
     world: World,
 ) -> Leaves:
     """Subdivide all roots, on several threads; the result does not depend on their number."""
-    coordinates, weights, incident_first, incident = roots.corners.arrays(prepared.scale)
+    coordinates, weights, incident_first, incident = roots.corners.arrays(
+        prepared.centre, prepared.scale
+    )
     first, count, flat = candidates
     special = np.array(roots.corners.special)
 
@@ -193,17 +207,15 @@ def candidates_of(
     """Candidates of every root: first, count, and all of them."""
     n, m = prepared.instance.n, len(found.sides) if found else 0
     if spans and found is not None:
-        exact = roots.corners.exact
+        coordinates = roots.corners.arrays(prepared.centre, prepared.scale)[0][:, [0, 2]]
         chain = np.empty((2 * m + 1, 2))
-        for k in range(m + 1):
-            chain[2 * k] = [float(c * prepared.scale) for c in exact[m + k % m]]
-            if k < m:
-                chain[2 * k + 1] = [float(c * prepared.scale) for c in exact[(k + 1) % m]]
+        chain[0::2] = coordinates[m + np.arange(m + 1) % m]
+        chain[1::2] = coordinates[(np.arange(m) + 1) % m]
         sifted: tuple[Ints, Ints, Ints] = sift_kernel(
             chain, m, n, prepared.segments, prepared.size, sense, world
         )
         return sifted
-    coordinates, weights, _, _ = roots.corners.arrays(prepared.scale)
+    coordinates, weights, _, _ = roots.corners.arrays(prepared.centre, prepared.scale)
     first, flat = sift_regions(
         roots.regions,
         coordinates,
@@ -219,15 +231,14 @@ def candidates_of(
     return first[region], (first[1:] - first[:-1])[region], flat
 
 
-def exact_corners(roots: Roots, root: int, shape: Floats) -> list[RationalPoint]:
-    """The exact corners of a triangle inside a root.
+def exact_corners(roots: Roots, leaves: Leaves, row: int) -> list[RationalPoint]:
+    """The exact corners of a leaf that is not empty, by its row among these.
 
     Raises Contradiction if one is at infinity.
     """
-    corners = [int(c) for c in roots.triangles[root]]
+    corners = [int(c) for c in roots.triangles[leaves.shape_roots[row]]]
     result = []
-    for row in shape.reshape(3, 3):
-        weights = [Fraction(x) for x in row]
+    for weights in leaves.weights(row):
         w = sum(
             (f * Fraction(roots.corners.weights[c]) for f, c in zip(weights, corners, strict=True)),
             Fraction(0),
@@ -271,7 +282,7 @@ def solve_open(
         if leaves.kinds[leaf] != HARD and leaves.choices[leaf] >= 0:
             continue
         low, high = leaves.open_first[number], leaves.open_first[number + 1]
-        corners = exact_corners(roots, int(leaves.shape_roots[row]), leaves.shapes[row])
+        corners = exact_corners(roots, leaves, row)
         solved[leaf] = solve(
             prepared.instance, leaves.open_ids[low:high].tolist(), corners, domain, objective
         )

@@ -103,11 +103,9 @@ class Chart:
             for end, c in zip(ends, triangle, strict=True)
         ]
         # Weights are multiples of a power of two.
-        finest = max(x.as_integer_ratio()[1] for x in leaves.shapes[self.row].tolist())
-        shape = [
-            [fmpz(int(x * finest)) for x in line]
-            for line in leaves.shapes[self.row].reshape(3, 3).tolist()
-        ]
+        weights = leaves.weights(self.row)
+        finest = max(x.denominator for line in weights for x in line)
+        shape = [[fmpz(x.numerator * (finest // x.denominator)) for x in line] for line in weights]
         #: The corners (x, y, w), times ``unit``: integers.
         self.corners = [
             tuple(

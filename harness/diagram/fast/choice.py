@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from harness.diagram.fast.double import sum_of
 from harness.diagram.fast.forms import coefficients
 from harness.diagram.fast.jit import compiled
 
@@ -15,6 +16,10 @@ _STEPS_ALONG = np.array(
         *([0, 3, 2], [3, 5, 2], [5, 1, 2], [4, 9, 2], [9, 6, 2], [7, 8, 2]),
     ]
 )
+
+
+#: A cubic less than so many times its error bound is worth computing more precisely.
+WORN = 2.0**8
 
 
 @compiled
@@ -32,16 +37,18 @@ def _turns(c, k, tiny):
 
 
 @compiled
-def side_to_halve(tables, start, m, depth, lsign):
-    """The corner opposite to the side along which the contest varies most.
+def side_to_halve(tables, norms, start, m, depth, lsign, factor):
+    """The corner opposite to the side along which the contest varies most, and whether rounding
+    blurs the contest.
 
     The variation of F between the first candidate and some others, along each side, relative to
-    its size.
+    its size.  Blurred: some F is near its error bound in the whole triangle.
     """
     variation = np.zeros(3)
     zeros, turning = np.zeros(3, np.int64), np.zeros(3, np.int64)
     along = np.zeros(3)
     pairs = 0
+    blurred = False
     for a in range(1, min(m, 6)):
         both = lsign[0] == 0 or lsign[a] == 0
         for sign in range(2 if both else 1):
@@ -54,6 +61,10 @@ def side_to_halve(tables, start, m, depth, lsign):
             if size == 0.0:
                 continue
             pairs += 1
+            if size < WORN * factor * (
+                norms[start, 1] * norms[start + a, 0] + norms[start + a, 1] * norms[start, 0]
+            ):
+                blurred = True
             for r in range(3):
                 if abs(c[r]) <= 1e-13 * size:
                     zeros[r] += 1
@@ -70,44 +81,61 @@ def side_to_halve(tables, start, m, depth, lsign):
     if depth & 1:
         for k in range(3):
             if pairs > 0 and zeros[k] == pairs and turning[k] > 0:
-                return k
+                return k, blurred
     best = 0
     for k in range(1, 3):
         if variation[k] > variation[best]:
             best = k
-    return best
+    return best, blurred
 
 
 @compiled
-def push_halves(frames, corners, exponents, top, start, m, depth, patience, far, k, finer, lam, e):
-    """Put both halves of a triangle on the stack, the first on top; see ``subdivide``.
+def halfway(lam, p, q, out, r):
+    """The middle of corners p and q of a triangle becomes corner r of another; see ``subdivide``.
 
-    The side opposite to corner k is halved; ``finer``: the number of halvings behind its middle.
+    Exact as long as double-doubles hold all weights.
+    """
+    for c in range(3):
+        s, e = sum_of(lam[3 * p + c], lam[3 * q + c])
+        e += lam[9 + 3 * p + c] + lam[9 + 3 * q + c]
+        h = s + e
+        out[3 * r + c], out[9 + 3 * r + c] = 0.5 * h, 0.5 * (e - (h - s))
+
+
+@compiled
+def copy_corner(lam, p, out, r):
+    """Corner p of a triangle becomes corner r of another."""
+    for c in range(3):
+        out[3 * r + c], out[9 + 3 * r + c] = lam[3 * p + c], lam[9 + 3 * p + c]
+
+
+@compiled
+def half_of(lam, e, k, second, out, exponents):
+    """One half of a triangle whose side opposite to corner k is halved.
+
+    ``lam`` (18,), ``e`` (3,): its corners and how often sides were halved to get them; ``out``,
+    ``exponents``: those of its half.  With corners P (number k), Q, R and M the middle of QR, the
+    first half is (P, Q, M) and the second (P, M, R).
     """
     q, r = (k + 1) % 3, (k + 2) % 3
-    middle_far = (far >> q & 1) & (far >> r & 1)
-    # Second half (P, M, R) below, first half (P, Q, M) on top of the stack.
-    for half in range(2):
-        f = top + half
-        frames[f, 0] = start + half * m
-        frames[f, 1] = m
-        frames[f, 2] = depth + 1
-        frames[f, 3] = patience
-        bits = far >> k & 1
-        corners[f, 0:3] = lam[3 * k : 3 * k + 3]
-        exponents[f, 0] = e[k]
-        if half == 0:
-            corners[f, 6:9] = lam[3 * r : 3 * r + 3]
-            exponents[f, 2] = e[r]
-            exponents[f, 1] = finer
-            bits |= middle_far << 1 | (far >> r & 1) << 2
-            for c in range(3):
-                corners[f, 3 + c] = 0.5 * (lam[3 * q + c] + lam[3 * r + c])
-        else:
-            corners[f, 3:6] = lam[3 * q : 3 * q + 3]
-            exponents[f, 1] = e[q]
-            exponents[f, 2] = finer
-            bits |= (far >> q & 1) << 1 | middle_far << 2
-            for c in range(3):
-                corners[f, 6 + c] = 0.5 * (lam[3 * q + c] + lam[3 * r + c])
-        frames[f, 4] = bits
+    finer = max(e[q], e[r]) + 1
+    copy_corner(lam, k, out, 0)
+    exponents[0] = e[k]
+    if second:
+        halfway(lam, q, r, out, 1)
+        copy_corner(lam, r, out, 2)
+        exponents[1], exponents[2] = finer, e[r]
+    else:
+        copy_corner(lam, q, out, 1)
+        halfway(lam, q, r, out, 2)
+        exponents[1], exponents[2] = e[q], finer
+
+
+@compiled
+def far_of_half(far, k, second):
+    """The corners at infinity, a bit each, of one half of a triangle."""
+    q, r = (k + 1) % 3, (k + 2) % 3
+    middle = (far >> q & 1) & (far >> r & 1)
+    if second:
+        return far >> k & 1 | middle << 1 | (far >> r & 1) << 2
+    return far >> k & 1 | (far >> q & 1) << 1 | middle << 2

@@ -37,7 +37,7 @@ def decide_open(instance: Instance, roots: Roots, leaves: Leaves, sense: float) 
         leaf = int(shaped[row])
         owners = leaves.slots[leaves.first_slot[leaf] : leaves.first_slot[leaf + 1], 1].tolist()
         root = int(leaves.shape_roots[row])
-        corners = _corners(roots, root, leaves.shapes[row].tolist())
+        corners = _corners(roots, root, leaves.weights(row))
         forms = {k: _forms(instance, k, corners, sense) for k in set(owners)}
         kind = leaves.kinds[leaf]
         choice = _quad(owners, forms) if kind == QUAD else OPEN
@@ -54,7 +54,7 @@ def _rational(value: float | Fraction) -> Any:
     return fmpq(exact.numerator, exact.denominator)
 
 
-def _corners(roots: Roots, root: int, shape: list[float]) -> list[tuple[Any, Any, Any]]:
+def _corners(roots: Roots, root: int, shape: list[list[Fraction]]) -> list[tuple[Any, Any, Any]]:
     """The homogeneous corners of a triangle, exactly."""
     of_root = [
         (*map(_rational, roots.corners.exact[c]), _rational(roots.corners.weights[c]))
@@ -62,7 +62,7 @@ def _corners(roots: Roots, root: int, shape: list[float]) -> list[tuple[Any, Any
     ]
     result = []
     for k in range(3):
-        weights = [_rational(x) for x in shape[3 * k : 3 * k + 3]]
+        weights = [_rational(x) for x in shape[k]]
         x, y, w = (
             sum((f * c[axis] for f, c in zip(weights, of_root, strict=True)), fmpq(0))
             for axis in range(3)

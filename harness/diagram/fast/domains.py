@@ -9,7 +9,14 @@ from functools import partial
 import numpy as np
 
 from harness.diagram.fast.plane import clipped_ears, refined
-from harness.diagram.fast.roots import Corners, Roots, between, free_number, free_wall_point
+from harness.diagram.fast.roots import (
+    Corners,
+    Roots,
+    between,
+    free_number,
+    free_wall_point,
+    rounded_about,
+)
 from harness.diagram.planar_map import RationalPoint
 from harness.geometry.instance import Instance
 from harness.geometry.kernel import Kernel
@@ -155,7 +162,7 @@ def free_point(corners: list[RationalPoint], seed: int) -> RationalPoint:
     weights = [Fraction(1) + free_number(k, seed) / 8 for k in range(m)]
     x = sum((w * c[0] for w, c in zip(weights, corners, strict=True)), Fraction(0)) / sum(weights)
     y = sum((w * c[1] for w, c in zip(weights, corners, strict=True)), Fraction(0)) / sum(weights)
-    rounded = (Fraction(float(x)), Fraction(float(y)))
+    rounded = rounded_about((x, y), corners[0])
     inside = all(orientation(corners[k - 1], corners[k], rounded) > 0 for k in range(m))
     return rounded if inside else (x, y)
 

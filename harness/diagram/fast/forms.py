@@ -25,6 +25,9 @@ adds at most 5 more roundings; two such sums are subtracted, one more.  Altogeth
 
 for which :func:`error_factor` returns (24 + 2d)u; the slack covers the terms in u² and underflow.
 
+In triangles where that is too much the tables are in double-double, with 18 columns, and the bound
+is that of :mod:`harness.diagram.fast.fine`; the functions of this room take either kind.
+
 **Structural zeros.**  An entry 0.0 *is* zero (the corner lies on the segment's line, or is its
 endpoint, by construction); an entry that merely rounds to zero is replaced by ``TINY``, far below
 every error bound.
@@ -34,9 +37,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from harness.diagram.fast.double import TINY
+from harness.diagram.fast.fine import fine_at_length, fine_coefficients, is_fine
 from harness.diagram.fast.jit import compiled
 
-TINY = 1e-100
 U = 2.0**-53
 
 # Positions in a table.
@@ -121,6 +125,8 @@ SUPPORT = np.array([1, 2, 4, 3, 5, 3, 6, 5, 6, 7])
 @compiled
 def coefficients(tables, i, j, si, sj):
     """The ten coefficients of Q_i sj L_j − Q_j si L_i, of the candidates in rows i and j."""
+    if is_fine(tables):
+        return fine_coefficients(tables, i, j, si, sj)
     a, b, c = si * tables[i, 0], si * tables[i, 1], si * tables[i, 2]
     d, e, f = sj * tables[j, 0], sj * tables[j, 1], sj * tables[j, 2]
     t3, t4, t5 = tables[i, 3], tables[i, 4], tables[i, 5]
@@ -190,7 +196,7 @@ def is_structural_zero(c, tables, i, j, si, sj, far, known):
 
 
 @compiled
-def divided_by_distance(values, signs, k):
+def divided_by_distance(values, k):
     """Replace F by the quadratic G of F = w·G, raised to degree three again.
 
     For two segments with the same vector (up to sign), over a triangle whose corners but k are at
@@ -247,9 +253,10 @@ def sure_signs(values, bound, signs):
 @compiled
 def surely_positive(tables, i, j, si, sj, bound, far, known):
     """Whether Q_i sj L_j − Q_j si L_i > 0 in the interior of the triangle."""
-    for k in range(3):  # most comparisons fail at a corner
-        if tables[i, 3 + k] * sj * tables[j, k] - tables[j, 3 + k] * si * tables[i, k] < -bound:
-            return False
+    if not is_fine(tables):  # most comparisons fail at a corner
+        for k in range(3):
+            if tables[i, 3 + k] * sj * tables[j, k] - tables[j, 3 + k] * si * tables[i, k] < -bound:
+                return False
     values = coefficients(tables, i, j, si, sj)
     least = min(
         min(min(values[0], values[1]), min(values[2], values[3])),
@@ -285,19 +292,27 @@ def cubic(tables, i, j, si, sj, bound, far, known, values, signs):
 
 
 @compiled
-def collinear_quadratic(tables, i, j, length_i, length_j, bound, values, signs):
+def at_length(tables, i, j, length_i, length_j, q):
+    """q_i·length_j − q_j·length_i for an entry q of Q; lengths (2,) in double-double."""
+    if is_fine(tables):
+        return fine_at_length(tables, i, j, length_i, length_j, q)
+    return tables[i, q] * length_j[0] - tables[j, q] * length_i[0]
+
+
+@compiled
+def collinear_quadratic(tables, i, j, length_i, length_j, values):
     """The same for two segments on one line: |L| is a common factor, what is left is
 
-    G = Q_i/length_i − Q_j/length_j times both lengths, raised to degree three.
+    G = Q_i/length_i − Q_j/length_j times both lengths, raised to degree three.  The signs are left
+    to the caller: raising the degree rounds once more.
     """
-    g200 = tables[i, 3] * length_j - tables[j, 3] * length_i
-    g020 = tables[i, 4] * length_j - tables[j, 4] * length_i
-    g002 = tables[i, 5] * length_j - tables[j, 5] * length_i
-    g110 = tables[i, 6] * length_j - tables[j, 6] * length_i
-    g101 = tables[i, 7] * length_j - tables[j, 7] * length_i
-    g011 = tables[i, 8] * length_j - tables[j, 8] * length_i
+    g200 = at_length(tables, i, j, length_i, length_j, 3)
+    g020 = at_length(tables, i, j, length_i, length_j, 4)
+    g002 = at_length(tables, i, j, length_i, length_j, 5)
+    g110 = at_length(tables, i, j, length_i, length_j, 6)
+    g101 = at_length(tables, i, j, length_i, length_j, 7)
+    g011 = at_length(tables, i, j, length_i, length_j, 8)
     raise_degree(g200, g020, g002, g110, g101, g011, values)
-    sure_signs(values, bound, signs)
 
 
 @compiled

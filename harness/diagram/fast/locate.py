@@ -123,7 +123,7 @@ def point_of_piece(diagram: FastDiagram, leaf: int, slot: int) -> RationalPoint 
     arrays, roots = diagram.arrays, diagram.roots
     chart = Chart(diagram, leaf)
     root = int(diagram.leaves.shape_roots[chart.row])
-    shape = [[Fraction(x) for x in line] for line in diagram.leaves.shapes[chart.row].reshape(3, 3)]
+    shape = diagram.leaves.weights(chart.row)
     base, count = int(arrays.start[leaf]), int(arrays.ports[leaf])
 
     def position(port: int) -> Fraction:

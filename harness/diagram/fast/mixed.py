@@ -17,7 +17,7 @@ from harness.diagram.fast.leaves import (
     sign_changes,
 )
 from harness.diagram.fast.loops import has_no_loop
-from harness.diagram.fast.sides import SIDE_AFTER
+from harness.diagram.fast.sides import SIDE_AFTER, rounding
 
 
 @compiled
@@ -34,6 +34,7 @@ def classify_mixed(tables, i, j, la, lb, q, bound, far, known, w):
     values, signs, controls, slots = w[0], w[1], w[3], w[4]
     cubic(tables, i, j, 1.0, 1.0, bound, far, known, values[0, 1], signs[0, 1])
     cubic(tables, i, j, -1.0, 1.0, bound, far, known, values[1, 0], signs[1, 0])
+    bound += max(rounding(tables, values[0, 1]), rounding(tables, values[1, 0]))
     for f in range(2):
         a, b = f, 1 - f
         if not has_no_loop(signs[a, b], values[a, b], bound, controls[a, b]):

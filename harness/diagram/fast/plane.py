@@ -9,7 +9,14 @@ from itertools import pairwise
 
 import numpy as np
 
-from harness.diagram.fast.roots import Corners, Roots, between, free_number, free_wall_point
+from harness.diagram.fast.roots import (
+    Corners,
+    Roots,
+    between,
+    free_number,
+    free_wall_point,
+    rounded_about,
+)
 from harness.diagram.planar_map import RationalPoint
 from harness.diagram.work import Contradiction
 from harness.geometry.instance import Instance
@@ -62,7 +69,7 @@ def refined(
         u, v = free_number(3 * t, seed), free_number(3 * t + 1, seed)
         on_side = between(points[a], points[b], u)
         x, y = between(on_side, points[c], v * Fraction(2, 3))
-        rounded = (Fraction(float(x)), Fraction(float(y)))
+        rounded = rounded_about((x, y), points[0])
         inside = _strictly_in(rounded, points[a], points[b], points[c])
         middles.append(corners.add(rounded if inside else (x, y)))
     across: defaultdict[frozenset[int], list[int]] = defaultdict(list)
@@ -133,20 +140,23 @@ def plane_roots(instance: Instance, seed: int) -> Roots:
         for point in segment:
             touching[point].append(2 * k + 1)
     points = list(touching)
-    floats = np.array([[float(x), float(y)] for x, y in points])
+    origin = points[0]
+    floats = np.array([[float(x - origin[0]), float(y - origin[1])] for x, y in points])
     centre = (floats.min(axis=0) + floats.max(axis=0)) / 2
     reach = float(np.ptp(floats, axis=0).max())
     turn = 0.3 + 0.7 * float(free_number(1, seed))
     corners_far = [
         (
-            Fraction(float(centre[0] + 6 * reach * np.cos(turn + 2 * np.pi * k / 3))),
-            Fraction(float(centre[1] + 6 * reach * np.sin(turn + 2 * np.pi * k / 3))),
+            origin[0] + Fraction(float(centre[0] + 6 * reach * np.cos(turn + 2 * np.pi * k / 3))),
+            origin[1] + Fraction(float(centre[1] + 6 * reach * np.sin(turn + 2 * np.pi * k / 3))),
         )
         for k in range(3)
     ]
     incident = [touching[p] for p in points] + [[], [], []]
     points += corners_far
-    floats = np.concatenate([floats, [[float(x), float(y)] for x, y in corners_far]])
+    floats = np.concatenate(
+        [floats, [[float(x - origin[0]), float(y - origin[1])] for x, y in corners_far]]
+    )
     simplices = Delaunay((floats - centre) / reach).simplices
     triangles = []
     for a, b, c in simplices.tolist():
@@ -157,8 +167,7 @@ def plane_roots(instance: Instance, seed: int) -> Roots:
     inner = refined(points, incident, triangles, {}, seed)
     n = len(points)
     directions: list[RationalPoint] = [
-        (Fraction(float(p[0]) - float(centre[0])), Fraction(float(p[1]) - float(centre[1])))
-        for p in corners_far
+        (Fraction(float(x - centre[0])), Fraction(float(y - centre[1]))) for x, y in floats[-3:]
     ]
     outer = []
     marked = parallel_directions(instance)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from harness.diagram.fast.roots import double_double
+from harness.diagram.planar_map import RationalPoint
 from harness.geometry.instance import Instance
 from harness.geometry.predicates import orientation
 
@@ -19,15 +20,19 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Prepared:
-    """``segments`` (n, 8): ax, ay, bx, by as double-doubles, times ``scale`` (a power of two).
+    """``segments`` (n, 8): ax, ay, bx, by as double-doubles, about ``centre`` and times ``scale``
+    (a power of two).
 
-    ``size``: the greatest coordinate, in absolute value.  ``lines`` (n,): a number for every line
-    that holds several segments, −1 for the other segments.  ``classes`` (n,): likewise for equal
-    vectors b − a, up to sign.  ``lengths`` (n,): |b − a|, used between segments of one line.
+    ``size``: the greatest of these coordinates, in absolute value.  ``lines`` (n,): a number for
+    every line that holds several segments, −1 for the other segments.  ``classes`` (n,): likewise
+    for equal vectors b − a, up to sign.  ``lengths`` (n, 2): of segments that share their line, a
+    coordinate of b − a, in absolute value and as a double-double: the ratio of two is that of the
+    lengths.
     """
 
     instance: Instance
     segments: Floats
+    centre: RationalPoint
     scale: Fraction
     size: float
     lines: Ints
@@ -45,26 +50,52 @@ def has_plain_size(instance: Instance) -> bool:
 def prepare(instance: Instance, parallels: bool) -> Prepared:
     """Arrays of an instance; ``parallels``: find equal vectors (needed at infinity only)."""
     n = instance.n
-    largest = float(np.abs(instance.segments).max())
+    points = instance.segments.reshape(-1, 2)
+    low, high = points.min(axis=0), points.max(axis=0)
+    # Coordinates small against their distance from the origin are taken about their middle.
+    far = np.abs(points).max() > 8 * (high - low).max()
+    middle = 0.5 * (low + high) if far else np.zeros(2)
+    centre = (Fraction(float(middle[0])), Fraction(float(middle[1])))
+    largest = float(np.abs(points - middle).max())
     exponent = int(np.frexp(largest)[1]) if largest > 0 else 0
     scale = Fraction(2) ** -exponent
     segments = np.zeros((n, 8))
     if instance.exact is None:
-        segments[:, 0::2] = np.ldexp(instance.segments.reshape(n, 4), -exponent)
+        exact = instance.segments.reshape(n, 4)
+        shift = np.tile(middle, 2)
+        segments[:, 0::2] = exact - shift
+        # What a difference of doubles lacks is a double.
+        back = segments[:, 0::2] - exact
+        segments[:, 1::2] = (exact - (segments[:, 0::2] - back)) - (shift + back)
+        segments = np.ldexp(segments, -exponent)
     else:
         for k, (a, b) in enumerate(instance.rational_segments()):
-            segments[k] = [part for c in (*a, *b) for part in double_double(c * scale)]
-    vectors = segments[:, [4, 6]] - segments[:, [0, 2]]
+            about = [c - centre[axis % 2] for axis, c in enumerate((*a, *b))]
+            segments[k] = [part for c in about for part in double_double(c * scale)]
     none = np.full(n, -1, dtype=np.int64)
+    lines = _common_lines(instance, segments[:, 0::2].reshape(n, 2, 2))
     return Prepared(
         instance=instance,
         segments=segments,
+        centre=centre,
         scale=scale,
         size=float(np.abs(segments).max()),
-        lines=_common_lines(instance, segments[:, 0::2].reshape(n, 2, 2)),
+        lines=lines,
         classes=_equal_vectors(instance) if parallels else none,
-        lengths=np.hypot(vectors[:, 0], vectors[:, 1]),
+        lengths=_lengths(instance, lines),
     )
+
+
+def _lengths(instance: Instance, lines: Ints) -> Floats:
+    """See :class:`Prepared`."""
+    lengths = np.zeros((instance.n, 2))
+    axis_of: dict[int, int] = {}
+    for k in np.flatnonzero(lines >= 0).tolist():
+        a, b = instance.rational_segment(k)
+        vector = (abs(b[0] - a[0]), abs(b[1] - a[1]))
+        axis = axis_of.setdefault(int(lines[k]), 0 if vector[0] >= vector[1] else 1)
+        lengths[k] = double_double(vector[axis])
+    return lengths
 
 
 def _common_lines(instance: Instance, segments: Floats) -> Ints:

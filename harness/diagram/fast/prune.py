@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from harness.diagram.fast.forms import relation, surely_positive
+from harness.diagram.fast.double import plus, plus_product, times
+from harness.diagram.fast.fine import is_fine
+from harness.diagram.fast.forms import at_length, relation, surely_positive
 from harness.diagram.fast.jit import compiled
 
 
 @compiled
-def localise(norms, start, m, lam, share):
-    """ML and MQ of all candidates on a triangle, columns 0 and 1, from those of the root, 2 and 3.
+def localise(norms, start, m, lam, share, first):
+    """ML and MQ of all candidates on a triangle, columns 0 and 1, from those of the root, in the
+    column ``first`` and the next.
 
     Column 4 holds the root's corners at which L is zero (3 bits) and at which Q is (3 bits).  At
     a point λ only the other corners contribute to L, so |L| ≤ ML·Σ λ_k over these, and roundings
@@ -25,9 +28,9 @@ def localise(norms, start, m, lam, share):
         share[bits] = most
     for a in range(start, start + m):
         flags = int(norms[a, 4])
-        norms[a, 0] = norms[a, 2] * share[flags & 7]
+        norms[a, 0] = norms[a, first] * share[flags & 7]
         ends = flags >> 3
-        norms[a, 1] = norms[a, 3]
+        norms[a, 1] = norms[a, first + 1]
         if ends == 1 or ends == 2 or ends == 4:
             norms[a, 1] *= min(1.0, 2.0 * share[ends])
 
@@ -91,7 +94,7 @@ def beats(tables, i, j, lt, ls, qt, qs, bound, far, known):
 def collinear_beats(tables, i, j, length_i, length_j, bound):
     """The same for two segments on one line: G > 0."""
     for k in range(3, 9):
-        if not tables[i, k] * length_j - tables[j, k] * length_i > bound:
+        if not at_length(tables, i, j, length_i, length_j, k) > bound:
             return False
     return True
 
@@ -116,12 +119,43 @@ def _best_at(tables, start, m, corner):
 
 
 @compiled
+def _fine_best_at(tables, start, m, corner):
+    """The same with fine tables."""
+    best = -1
+    bq, bl = (0.0, 0.0), (1.0, 0.0)
+    for a in range(m):
+        t = tables[start + a]
+        if corner < 3:
+            q, line = (t[3 + corner], t[12 + corner]), (t[corner], t[9 + corner])
+        else:
+            q = plus(t[6], t[15], t[7], t[16])
+            q = plus(q[0], q[1], t[8], t[17])
+            q = plus(2.0 * q[0], 2.0 * q[1], t[3], t[12])
+            q = plus(q[0], q[1], t[4], t[13])
+            q = plus(q[0], q[1], t[5], t[14])
+            line = plus(t[0], t[9], t[1], t[10])
+            line = plus(line[0], line[1], t[2], t[11])
+        if line[0] < 0.0:
+            line = (-line[0], -line[1])
+        if q[0] == 0.0 and line[0] == 0.0:
+            continue
+        more = times(q[0], q[1], bl[0], bl[1])
+        more = plus_product(more[0], more[1], -bq[0], -bq[1], line[0], line[1])
+        if best < 0 or more[0] > 0.0:
+            best, bq, bl = a, q, line
+    return best
+
+
+@compiled
 def prune(tables, norms, ids, start, m, factor, far, definite, work, world, spots):
     """Drop candidates beaten by a pivot; the number left, moved to the front (stable)."""
     pivots, lsign, qsign, beaten = work
     count = 0
     for corner in range(4):
-        best = _best_at(tables, start, m, corner)
+        if is_fine(tables):
+            best = _fine_best_at(tables, start, m, corner)
+        else:
+            best = _best_at(tables, start, m, corner)
         new = best >= 0
         for r in range(count):
             new = new and pivots[r] != best
@@ -161,9 +195,9 @@ def keep(tables, norms, ids, start, m, lsign, qsign, beaten):
     for a in range(m):
         if not beaten[a]:
             if kept != a:
-                for c in range(9):
+                for c in range(tables.shape[1]):
                     tables[start + kept, c] = tables[start + a, c]
-                for c in range(5):
+                for c in range(norms.shape[1]):
                     norms[start + kept, c] = norms[start + a, c]
                 ids[start + kept] = ids[start + a]
                 lsign[kept] = lsign[a]
@@ -177,7 +211,7 @@ def _tested(tables, norms, ids, start, p, a, lsign, qsign, factor, far, world, s
     lines, lengths, classes, tie_first, ties = world
     i, j = ids[start + p], ids[start + a]
     if lines[i] >= 0 and lines[i] == lines[j]:
-        bound = factor * (norms[start + p, 1] * lengths[j] + norms[start + a, 1] * lengths[i])
+        bound = factor * (norms[start + p, 1] * lengths[j, 0] + norms[start + a, 1] * lengths[i, 0])
         return collinear_beats(tables, start + p, start + a, lengths[i], lengths[j], bound)
     bound = factor * (
         norms[start + p, 1] * norms[start + a, 0] + norms[start + a, 1] * norms[start + p, 0]

@@ -63,15 +63,14 @@ class Corners:
         self.special.append(special)
         return len(self.exact) - 1
 
-    def arrays(self, scale: Fraction) -> tuple[Floats, Floats, Ints, Ints]:
-        """Coordinates (c, 4) times ``scale``, weights (c,), and the incident segments in CSR form.
-
-        Of corners at infinity only the high parts are used; free ones must be doubles.
-        """
-        coordinates = np.array(
-            [[*double_double(x * scale), *double_double(y * scale)] for x, y in self.exact],
-            dtype=np.float64,
-        ).reshape(-1, 4)
+    def arrays(self, centre: RationalPoint, scale: Fraction) -> tuple[Floats, Floats, Ints, Ints]:
+        """Coordinates (c, 4) about ``centre`` times ``scale``, as double-doubles, weights (c,),
+        and the incident segments in CSR form."""
+        coordinates = np.empty((len(self.exact), 4))
+        for k, (point, weight) in enumerate(zip(self.exact, self.weights, strict=True)):
+            for axis in range(2):
+                value = point[axis] - centre[axis] if weight else point[axis]
+                coordinates[k, 2 * axis : 2 * axis + 2] = double_double(value * scale)
         first = np.cumsum([0, *map(len, self.incident)])
         flat = [z for row in self.incident for z in row]
         return coordinates, np.array(self.weights), first, np.array(flat, dtype=np.int64)
@@ -128,6 +127,14 @@ def free_number(k: int, seed: int) -> Fraction:
 def between(a: RationalPoint, b: RationalPoint, t: Fraction) -> RationalPoint:
     """The point a + t(b − a)."""
     return a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])
+
+
+def rounded_about(point: RationalPoint, origin: RationalPoint) -> RationalPoint:
+    """A point with fewer digits: its difference from an origin is rounded to doubles."""
+    return (
+        origin[0] + Fraction(float(point[0] - origin[0])),
+        origin[1] + Fraction(float(point[1] - origin[1])),
+    )
 
 
 def free_wall_point(corners: Corners, a: int, b: int, number: int, seed: int) -> int:

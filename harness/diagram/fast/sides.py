@@ -9,9 +9,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from harness.diagram.fast.fine import is_fine
 from harness.diagram.fast.forms import (
     SIDES,
     UNKNOWN,
+    U,
     collinear_quadratic,
     cubic,
     divided_by_distance,
@@ -62,18 +64,13 @@ def all_pairs(tables, start, m, sides, norms, factor, far, world, spots, ids, w)
             i, j = ids[start + a], ids[start + b]
             if lines[i] >= 0 and lines[i] == lines[j]:
                 bound = factor * (
-                    norms[start + a, 1] * lengths[j] + norms[start + b, 1] * lengths[i]
+                    norms[start + a, 1] * lengths[j, 0] + norms[start + b, 1] * lengths[i, 0]
                 )
                 collinear_quadratic(
-                    tables,
-                    start + a,
-                    start + b,
-                    lengths[i],
-                    lengths[j],
-                    bound,
-                    values[a, b],
-                    signs[a, b],
+                    tables, start + a, start + b, lengths[i], lengths[j], values[a, b]
                 )
+                bound += rounding(tables, values[a, b])
+                sure_signs(values[a, b], bound, signs[a, b])
             else:
                 bound = factor * (
                     norms[start + a, 1] * norms[start + b, 0]
@@ -92,9 +89,10 @@ def all_pairs(tables, start, m, sides, norms, factor, far, world, spots, ids, w)
                     values[a, b],
                     signs[a, b],
                 )
+                bound += rounding(tables, values[a, b])
                 if known & 1 and _vanishes_far(signs[a, b], far):
                     near = 0 if far == 6 else (1 if far == 5 else 2)
-                    divided_by_distance(values[a, b], signs[a, b], near)
+                    divided_by_distance(values[a, b], near)
                     bound *= 9.0
                     sure_signs(values[a, b], bound, signs[a, b])
             bounds[a, b] = bounds[b, a] = bound
@@ -102,6 +100,17 @@ def all_pairs(tables, start, m, sides, norms, factor, far, world, spots, ids, w)
                 values[b, a, c] = -values[a, b, c]
                 sign = signs[a, b, c]
                 signs[b, a, c] = sign if sign == UNKNOWN else -sign
+
+
+@compiled
+def rounding(tables, values):
+    """How far values are off after rounding to doubles, if they come from fine tables."""
+    if not is_fine(tables):
+        return 0.0
+    largest = 0.0
+    for c in range(10):
+        largest = max(largest, abs(values[c]))
+    return 12.0 * U * largest
 
 
 @compiled

@@ -16,7 +16,7 @@ def new_work(n):
     """Working space for :func:`sift`."""
     return (
         np.empty((n, 9)),
-        np.empty((n, 5)),
+        np.empty((n, 8)),
         (
             np.zeros(4, np.int64),
             np.zeros(n, np.int64),

@@ -13,26 +13,21 @@ from __future__ import annotations
 
 import numpy as np
 
-from harness.diagram.fast.choice import push_halves, side_to_halve
-from harness.diagram.fast.classify import (
-    beaten_by_two,
-    classify_definite,
-    is_blurred,
-    may_tie_at_corner,
-)
-from harness.diagram.fast.forms import error_factor, halve, relation
+from harness.diagram.fast.choice import far_of_half, half_of, side_to_halve
+from harness.diagram.fast.examine import NORMS, examine, examine_finely
+from harness.diagram.fast.fine import FINE, FINEST
+from harness.diagram.fast.forms import error_factor, halve
 from harness.diagram.fast.jit import compiled
 from harness.diagram.fast.leaves import EMPTY, FAILED, HARD
-from harness.diagram.fast.mixed import classify_mixed
-from harness.diagram.fast.prune import keep, localise, prune
-from harness.diagram.fast.sides import MOST_PAIRED, all_pairs, new_scratch
+from harness.diagram.fast.prune import localise
+from harness.diagram.fast.sides import MOST_PAIRED, new_scratch
 from harness.diagram.fast.tables import root_table
 
 LEAF = 3
-#: Corners are exact in doubles: at most this many halvings between a corner and the root's.
-FINEST = 50
+#: Corners are exact in doubles: so many halvings between a corner and the root's, else finer.
+FINE_FROM = 50
 #: After so many halvings without losing a candidate a triangle is handed over as hard.
-PATIENCE = 90
+PATIENCE = 200
 
 
 @compiled
@@ -43,6 +38,46 @@ def grown(array, needed):
     bigger = np.empty((max(needed, 2 * len(array)), *array.shape[1:]), array.dtype)
     bigger[: len(array)] = array
     return bigger
+
+
+@compiled
+def _root_tables(
+    candidates,
+    triangle,
+    incident_first,
+    incident,
+    segments,
+    corners,
+    weights,
+    size,
+    sense,
+    tables,
+    norms,
+    ids,
+):
+    """Tables and norms of the candidates over a root triangle."""
+    for a in range(len(candidates)):
+        ids[a] = candidates[a]
+        zeros = ends = 0
+        for k in range(3):
+            for z in range(incident_first[triangle[k]], incident_first[triangle[k] + 1]):
+                if incident[z] >> 1 == ids[a]:
+                    zeros |= 1 << k
+                    if incident[z] & 1:
+                        ends |= 1 << k
+        root_table(
+            segments[ids[a]],
+            corners,
+            weights,
+            zeros,
+            ends,
+            size,
+            sense,
+            tables[a],
+            norms[a, 2:4],
+        )
+        norms[a, 4] = zeros + 8 * ends
+        norms[a, 5] = a
 
 
 @compiled
@@ -79,25 +114,29 @@ def subdivide(
     row of each corner, rows; see :func:`harness.diagram.fast.forms.relation`).  ``most``: triangles
     allowed in a root.
 
-    Returns (tokens, leaf kinds, choices, first slot of each leaf, slots: place and owner, λ of
-    the corners of the leaves that are not empty, a point in each, root of each, first candidate
-    and candidates of the open leaves, statistics).
+    Returns (tokens, leaf kinds, choices, first slot of each leaf, slots: place and owner, λ of the
+    corners of the leaves that are not empty and their low parts, a point in each, root of each,
+    first candidate and candidates of the open leaves, statistics: triangles, tests, hard leaves,
+    open leaves, leaves in double-double).
     """
     widest = 0
     for r in order:
         widest = max(widest, candidate_count[r])
-    tables = np.empty((4 * widest + 64, 9))
-    norms = np.empty((4 * widest + 64, 5))
-    ids = np.empty(4 * widest + 64, np.int64)
-    frames = np.zeros((256, 5), np.int64)  # start, count, depth, patience, far
-    corners = np.zeros((256, 9))
+    room = 4 * widest + 64
+    tables = np.empty((room, 9))
+    norms = np.empty((room, NORMS))
+    ids = np.empty(room, np.int64)
+    finer_room = (np.empty((widest, 18)), np.empty((widest, NORMS)), np.empty(widest, np.int64))
+    of_root, known = np.empty((widest, 20)), np.zeros(widest, np.bool_)
+    frames = np.zeros((256, 6), np.int64)  # start, count, depth, patience, far, fine
+    corners = np.zeros((256, 18))
     exponents = np.zeros((256, 3), np.int64)
     tokens = np.empty(1024, np.int8)
     kinds = np.empty(512, np.int8)
     choices = np.empty(512, np.int8)
     slots = np.empty((1024, 2), np.int32)
     first_slot = np.empty(513, np.int64)
-    shapes = np.empty((256, 9))
+    shapes = np.empty((256, 18))
     points = np.empty((256, 2))
     shape_roots = np.empty(256, np.int32)
     open_first = np.empty(65, np.int64)
@@ -111,16 +150,15 @@ def subdivide(
         np.zeros(widest + MOST_PAIRED, np.int64),
     )
     sides = np.ones(MOST_PAIRED)
-    statistics = np.zeros(4, np.int64)
+    statistics = np.zeros(5, np.int64)
     spots = np.empty(3, np.int64)
     share = np.ones(8)
     e = np.empty(3, np.int64)
-    lam = np.empty(9)
-    lines, _, classes, tie_first, ties = world
+    lam = np.empty(18)
+    tie_first = world[3]
     root_corners = np.empty((3, 4))
     root_weights = np.empty(3)
     for root in order:
-        first = candidate_first[root]
         m = candidate_count[root]
         far = 0
         for k in range(3):
@@ -128,63 +166,45 @@ def subdivide(
             root_weights[k] = weights[triangles[root, k]]
             if root_weights[k] == 0.0:
                 far |= 1 << k
-        for a in range(m):
-            ids[a] = candidates[first + a]
-            zeros = ends = 0
-            for k in range(3):
-                corner = triangles[root, k]
-                for z in range(incident_first[corner], incident_first[corner + 1]):
-                    if incident[z] >> 1 == ids[a]:
-                        zeros |= 1 << k
-                        if incident[z] & 1:
-                            ends |= 1 << k
-            root_table(
-                segments[ids[a]],
-                root_corners,
-                root_weights,
-                zeros,
-                ends,
-                size,
-                sense,
-                tables[a],
-                norms[a, 2:4],
-            )
-            norms[a, 4] = zeros + 8 * ends
-        frames[0, 0], frames[0, 1], frames[0, 2], frames[0, 3], frames[0, 4] = 0, m, 0, 0, far
+        _root_tables(
+            candidates[candidate_first[root] : candidate_first[root] + m],
+            triangles[root],
+            incident_first,
+            incident,
+            segments,
+            root_corners,
+            root_weights,
+            size,
+            sense,
+            tables,
+            norms,
+            ids,
+        )
+        known[:] = False
+        source = (segments, root_corners, root_weights, size, sense, of_root, known)
         exponents[0] = 0
         corners[0] = 0.0
         for k in range(3):
             corners[0, 4 * k] = 1.0
+        for step in path:
+            lam[:] = corners[0]
+            e[:] = exponents[0]
+            half_of(lam, e, step >> 1, step & 1, corners[0], exponents[0])
+            for a in range(m):
+                halve(tables, a, step >> 1, widest)
+                if step & 1 == 0:
+                    tables[a] = tables[widest]
+        frames[0, 0], frames[0, 1], frames[0, 2] = 0, m, len(path)
+        frames[0, 3], frames[0, 4], frames[0, 5] = 0, far, 0
         before = statistics[0]
         allowed = min(most, 20_000 + 1_000 * m * m)
-        for step in path:
-            k, q, r = step >> 1, ((step >> 1) + 1) % 3, ((step >> 1) + 2) % 3
-            for a in range(m):
-                halve(tables, a, k, widest)
-                if step & 1 == 0:
-                    for c in range(9):
-                        tables[a, c] = tables[widest, c]
-            e[:] = exponents[0]
-            lam[:] = corners[0]
-            finer = max(e[q], e[r]) + 1
-            p, near, far_end = 3 * k, 3 * q, 3 * r
-            for c in range(3):
-                middle = 0.5 * (lam[near + c] + lam[far_end + c])
-                corners[0, c] = lam[p + c]
-                corners[0, 3 + c] = middle if step & 1 else lam[near + c]
-                corners[0, 6 + c] = lam[far_end + c] if step & 1 else middle
-            exponents[0, 0] = e[k]
-            exponents[0, 1] = finer if step & 1 else e[q]
-            exponents[0, 2] = e[r] if step & 1 else finer
-        frames[0, 2] = len(path)
         top = 1
         while top > 0:
             top -= 1
             start, m, depth = frames[top, 0], frames[top, 1], frames[top, 2]
-            patience, far = frames[top, 3], frames[top, 4]
+            patience, far, fine = frames[top, 3], frames[top, 4], frames[top, 5]
             e[:] = exponents[top]
             lam[:] = corners[top]
-            factor = error_factor(depth)
             for k in range(3):
                 spots[k] = -1
                 if e[k] == 0:
@@ -192,108 +212,83 @@ def subdivide(
                         corner = triangles[root, c]
                         if lam[3 * k + c] == 1.0 and tie_first[corner] < tie_first[corner + 1]:
                             spots[k] = corner
-            localise(norms, start, m, lam, share)
-            kept, tests = prune(
-                tables, norms, ids, start, m, factor, far, definite, work, world, spots
-            )
+            place = (far, spots, e, lam, triangles[root])
             statistics[0] += 1
-            statistics[1] += tests
-            patience = 0 if kept < m else patience + 1
-            m = kept
-            kind, ports, choice = FAILED, 0, 0
-            lsign, qsign = work[1], work[2]
-            if m == 1:
-                kind = EMPTY
-                scratch[4][0, 0], scratch[4][0, 1] = 1, 0
-            elif m <= MOST_PAIRED:
-                mixed = False
-                for a in range(m):
-                    mixed = mixed or lsign[a] == 0
-                    sides[a] = lsign[a] if lsign[a] != 0 else 1
-                same_line = (
-                    m == 2 and lines[ids[start]] >= 0 and lines[ids[start]] == lines[ids[start + 1]]
+            had, k = m, 0
+            if fine == 0:
+                factor = error_factor(depth)
+                localise(norms, start, m, lam, share, 2)
+                m, tests, kind, ports, choice = examine(
+                    tables,
+                    norms,
+                    ids,
+                    start,
+                    m,
+                    factor,
+                    place,
+                    definite,
+                    world,
+                    work,
+                    sides,
+                    scratch,
+                    special,
                 )
-                if not mixed or same_line:
-                    all_pairs(
-                        tables, start, m, sides, norms, factor, far, world, spots, ids, scratch
-                    )
-                    if m > 2 and beaten_by_two(m, scratch, work[3]) < m:
-                        m = keep(tables, norms, ids, start, m, lsign, qsign, work[3])
-                        for a in range(m):
-                            sides[a] = lsign[a] if lsign[a] != 0 else 1
-                        all_pairs(
-                            tables, start, m, sides, norms, factor, far, world, spots, ids, scratch
-                        )
-                    if m == 1:
-                        kind = EMPTY
-                        scratch[4][0, 0], scratch[4][0, 1] = 1, 0
-                    elif m <= 4:
-                        kind, ports, choice = classify_definite(m, scratch)
-                    if kind == FAILED and (
-                        is_blurred(m, scratch)
-                        or may_tie_at_corner(m, scratch, e, lam, triangles[root], special)
-                    ):
-                        kind = HARD
-                elif m == 2 and qsign[0] != 0 and qsign[0] == qsign[1]:
-                    i, j = ids[start], ids[start + 1]
-                    bound = factor * (
-                        norms[start, 1] * norms[start + 1, 0]
-                        + norms[start + 1, 1] * norms[start, 0]
-                    )
-                    known = relation(i, j, classes, tie_first, ties, spots)
-                    kind, ports, choice = classify_mixed(
-                        tables,
-                        start,
-                        start + 1,
-                        lsign[0],
-                        lsign[1],
-                        qsign[0],
-                        bound,
-                        far,
-                        known,
-                        scratch,
-                    )
-            k = side_to_halve(tables, start, m, depth, lsign) if kind == FAILED else 0
-            if kind == FAILED:
-                q, r = (k + 1) % 3, (k + 2) % 3
-                finer = max(e[q], e[r]) + 1
-                if (
-                    finer > FINEST
-                    or (patience > PATIENCE and m <= 12)
-                    or statistics[0] - before > allowed
-                ):
-                    kind = HARD
+                statistics[1] += tests
+                if kind == FAILED:
+                    k, blurred = side_to_halve(tables, norms, start, m, depth, work[1], factor)
+                    if blurred or max(e[(k + 1) % 3], e[(k + 2) % 3]) >= FINE_FROM:
+                        fine = 1
+                elif kind == HARD:
+                    fine = 1
+            if fine == 1:
+                m, tests, kind, ports, choice = examine_finely(
+                    finer_room,
+                    norms,
+                    ids,
+                    start,
+                    m,
+                    place,
+                    definite,
+                    world,
+                    work,
+                    sides,
+                    scratch,
+                    special,
+                    share,
+                    source,
+                )
+                statistics[1] += tests
+                if kind == FAILED:
+                    k, _ = side_to_halve(finer_room[0], finer_room[1], 0, m, depth, work[1], FINE)
+            patience = 0 if m < had else patience + 1
+            if kind == FAILED and (
+                max(e[(k + 1) % 3], e[(k + 2) % 3]) >= FINEST
+                or (patience > PATIENCE and m <= 12)
+                or statistics[0] - before > allowed
+            ):
+                kind = HARD
             tokens = grown(tokens, n_tokens + 1)
             if kind == FAILED:
                 tokens[n_tokens] = k
                 n_tokens += 1
-                top_needed = start + 2 * m
-                tables = grown(tables, top_needed)
-                norms = grown(norms, top_needed)
-                ids = grown(ids, top_needed)
+                needed = start + 2 * m
+                tables, norms, ids = grown(tables, needed), grown(norms, needed), grown(ids, needed)
                 for a in range(m):
-                    halve(tables, start + a, k, start + m + a)
+                    if fine == 0:
+                        halve(tables, start + a, k, start + m + a)
                     norms[start + m + a] = norms[start + a]
                     ids[start + m + a] = ids[start + a]
-                if top + 2 > len(frames):
-                    frames = grown(frames, top + 2)
-                    corners = grown(corners, top + 2)
-                    exponents = grown(exponents, top + 2)
-                push_halves(
-                    frames,
-                    corners,
-                    exponents,
-                    top,
-                    start,
-                    m,
-                    depth,
-                    patience,
-                    far,
-                    k,
-                    finer,
-                    lam,
-                    e,
-                )
+                frames = grown(frames, top + 2)
+                corners = grown(corners, top + 2)
+                exponents = grown(exponents, top + 2)
+                # The second half (P, M, R) below, the first (P, Q, M) on top of the stack.
+                for half in range(2):
+                    second = half == 0
+                    f = top + half
+                    half_of(lam, e, k, second, corners[f], exponents[f])
+                    frames[f, 0], frames[f, 1], frames[f, 2] = start + half * m, m, depth + 1
+                    frames[f, 3], frames[f, 5] = patience, fine
+                    frames[f, 4] = far_of_half(far, k, second)
                 top += 2
                 continue
             tokens[n_tokens] = LEAF
@@ -305,9 +300,8 @@ def subdivide(
             choices[n_leaves] = choice
             first_slot[n_leaves] = n_slots
             n_leaves += 1
-            count = max(ports, 1)
-            if kind == HARD:
-                count = 0
+            statistics[4] += fine
+            count = 0 if kind == HARD else max(ports, 1)
             slots = grown(slots, n_slots + count)
             for c in range(count):
                 slots[n_slots + c, 0] = scratch[4][c, 0]
@@ -325,8 +319,7 @@ def subdivide(
                     open_first = grown(open_first, n_open + 2)
                     open_first[n_open] = n_open_ids
                     open_ids = grown(open_ids, n_open_ids + m)
-                    for a in range(m):
-                        open_ids[n_open_ids + a] = ids[start + a]
+                    open_ids[n_open_ids : n_open_ids + m] = ids[start : start + m]
                     n_open_ids += m
                     n_open += 1
                     statistics[2 if kind == HARD else 3] += 1
@@ -338,7 +331,8 @@ def subdivide(
         choices[:n_leaves].copy(),
         first_slot[: n_leaves + 1].copy(),
         slots[:n_slots].copy(),
-        shapes[:n_shapes].copy(),
+        shapes[:n_shapes, :9].copy(),
+        shapes[:n_shapes, 9:].copy(),
         points[:n_shapes].copy(),
         shape_roots[:n_shapes].copy(),
         open_first[: n_open + 1].copy(),

@@ -7,7 +7,7 @@ rest is plain doubles.  :mod:`harness.diagram.fast.forms` bounds the error.
 
 from __future__ import annotations
 
-from harness.diagram.fast.forms import TINY
+from harness.diagram.fast.double import TINY
 from harness.diagram.fast.jit import compiled
 
 #: Times S, the least size that a coordinate difference is taken to have in an error bound.

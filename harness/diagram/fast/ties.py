@@ -25,7 +25,7 @@ def ties_at_corners(instance: Instance, roots: Roots, leaves: Leaves) -> Ties:
         ids = leaves.open_ids[leaves.open_first[number] : leaves.open_first[number + 1]].tolist()
         shape = leaves.shapes[row].reshape(3, 3)
         for k in range(3):
-            if shape[k].max() != 1.0:
+            if np.count_nonzero(shape[k]) != 1:
                 continue
             corner = int(roots.triangles[leaves.shape_roots[row], int(shape[k].argmax())])
             if not roots.corners.weights[corner]:

@@ -207,7 +207,7 @@ class Descent:
             rows, self.norms, self.scene.zeros, self.scene.ends, strict=True
         ):
             row[2:4], row[4] = norm, zeros + 8 * ends
-        localise(rows, 0, 2, self.weights.ravel(), np.ones(8))
+        localise(rows, 0, 2, self.weights.ravel(), np.ones(8), 2)
         return rows[:, :2]
 
     @property
