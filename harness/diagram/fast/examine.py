@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from harness.diagram.fast.choice import side_to_halve
 from harness.diagram.fast.classify import (
     beaten_by_two,
     classify_definite,
@@ -9,9 +10,10 @@ from harness.diagram.fast.classify import (
     may_tie_at_corner,
 )
 from harness.diagram.fast.fine import FINE, fine_root_table, fine_table
-from harness.diagram.fast.forms import relation
+from harness.diagram.fast.fine_points import fine_quad_choice, suspects_hub
+from harness.diagram.fast.forms import error_factor, relation
 from harness.diagram.fast.jit import compiled
-from harness.diagram.fast.leaves import EMPTY, FAILED, HARD
+from harness.diagram.fast.leaves import EMPTY, FAILED, HARD, OPEN, QUAD
 from harness.diagram.fast.mixed import classify_mixed
 from harness.diagram.fast.prune import keep, localise, prune
 from harness.diagram.fast.sides import MOST_PAIRED, all_pairs
@@ -19,18 +21,24 @@ from harness.diagram.fast.sides import MOST_PAIRED, all_pairs
 #: Columns of ``norms``: ML and MQ on the triangle, on the root; flags; number of the candidate in
 #: its root; ML and MQ of the fine table.
 NORMS = 8
+#: Corners are exact in doubles: so many halvings between a corner and the root's, else finer.
+FINE_FROM = 50
+#: After so many halvings without losing a candidate a tie of many is suspected.
+HUB = 5
 
 
 @compiled
-def examine(
-    tables, norms, ids, start, m, factor, place, definite, world, work, sides, scratch, special
-):
+def examine(tables, norms, ids, start, m, factor, place, scene, desk):
     """Drop candidates, and classify the triangle.
 
-    ``place``: (far, spots, exponents, lam, corners of the root) of the triangle.  Returns the
-    number of candidates left, of tests, and the kind of leaf, its ports and choice; HARD if halving
-    would not help: rounding blurs the contest, or there may be a tie at a special corner.
+    ``place``: (far, spots, exponents, lam, corners of the root) of the triangle; ``scene``:
+    (definite, world, special) and ``desk``: (work, sides, scratch, share, room for fine tables) of
+    the subdivision.  Returns the number of candidates left, of tests, and the kind of leaf, its
+    ports and choice; HARD if halving would not help: rounding blurs the contest, or there may be a
+    tie at a special corner.
     """
+    definite, world, special = scene
+    work, sides, scratch, _, _ = desk
     far, spots, exponents, lam, corners = place
     m, tests = prune(tables, norms, ids, start, m, factor, far, definite, work, world, spots)
     lsign, qsign = work[1], work[2]
@@ -78,28 +86,13 @@ def examine(
 
 
 @compiled
-def examine_finely(
-    fine,
-    norms,
-    ids,
-    start,
-    m,
-    place,
-    definite,
-    world,
-    work,
-    sides,
-    scratch,
-    special,
-    share,
-    source,
-):
-    """The same in double-double; ``fine`` = (tables, norms, ids) is room for it.
+def examine_finely(norms, ids, start, m, place, scene, desk, source, patience, probe):
+    """The same in double-double, for the candidates from ``start`` on.
 
     ``source``: (segments, corners of the root, weights, size, sense, tables of the root, whether
-    these are computed).  The candidates left, from ``start`` on, lose their tables of doubles.
+    these are computed).  With ``probe`` nothing changes unless the triangle turns out to be a leaf.
     """
-    tables, fine_norms, fine_ids = fine
+    tables, fine_norms, fine_ids = desk[4]
     segments, root_corners, root_weights, size, sense, of_root, known = source
     lam = place[3]
     for a in range(m):
@@ -123,23 +116,60 @@ def examine_finely(
         fine_table(of_root[number], flags & 7, flags >> 3, lam, tables[a])
         fine_norms[a] = norms[start + a]
         fine_ids[a] = candidate
-    localise(fine_norms, 0, m, lam, share, 6)
-    m, tests, kind, ports, choice = examine(
-        tables,
-        fine_norms,
-        fine_ids,
-        0,
-        m,
-        FINE,
-        place,
-        definite,
-        world,
-        work,
-        sides,
-        scratch,
-        special,
+    localise(fine_norms, 0, m, lam, desk[3], 6)
+    left, tests, kind, ports, choice = examine(
+        tables, fine_norms, fine_ids, 0, m, FINE, place, scene, desk
     )
-    for a in range(m):
+    if kind == QUAD and choice == OPEN:
+        choice = fine_quad_choice(tables, fine_norms, desk[1], desk[2])
+    elif (
+        kind == FAILED
+        and patience > HUB
+        and suspects_hub(tables, fine_norms, left, desk[0][1], desk[2][6])
+    ):
+        kind = HARD
+    if probe and kind == FAILED:
+        return m, tests, kind, ports, choice
+    for a in range(left):
         norms[start + a] = fine_norms[a]
         ids[start + a] = fine_ids[a]
-    return m, tests, kind, ports, choice
+    return left, tests, kind, ports, choice
+
+
+@compiled
+def look(tables, norms, ids, start, m, frame, place, scene, desk, source):
+    """Examine a triangle in doubles, and in double-double where that may help.
+
+    ``frame``: (depth, patience, fine) of the triangle; fine: not in doubles.  Returns what
+    ``examine`` does, the corner opposite to the side to halve if it is no leaf, and whether its
+    halves are to be examined in double-double only.
+    """
+    depth, patience, fine = frame
+    e = place[2]
+    lsign = desk[0][1]
+    tests = 0
+    if not fine:
+        factor = error_factor(depth)
+        localise(norms, start, m, place[3], desk[3], 2)
+        m, tests, kind, ports, choice = examine(
+            tables, norms, ids, start, m, factor, place, scene, desk
+        )
+        if kind != FAILED and kind != HARD and not (kind == QUAD and choice == OPEN):
+            return m, tests, kind, ports, choice, 0, False
+        k, probe = 0, False
+        if kind == FAILED:
+            k, blurred = side_to_halve(tables, norms, start, m, depth, lsign, factor)
+            fine = blurred or max(e[(k + 1) % 3], e[(k + 2) % 3]) >= FINE_FROM
+            probe = not fine and m > 2 and patience > HUB and patience % 8 == 6
+            if not fine and not probe:
+                return m, tests, kind, ports, choice, k, False
+    else:
+        probe = False
+    m, more, kind, ports, choice = examine_finely(
+        norms, ids, start, m, place, scene, desk, source, patience, probe
+    )
+    tests += more
+    if kind == FAILED and not probe:
+        room = desk[4]
+        k, _ = side_to_halve(room[0], room[1], 0, m, depth, lsign, FINE)
+    return m, tests, kind, ports, choice, k, not probe

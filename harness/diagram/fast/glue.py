@@ -24,7 +24,7 @@ from harness.diagram.fast.leaves import (
     TRIPLE,
     TWO_ARCS,
 )
-from harness.diagram.fast.subdivide import LEAF
+from harness.diagram.fast.subdivide import DEEPEST, LEAF
 
 
 @compiled
@@ -220,8 +220,10 @@ def glue_tree(
 
     Returns (position after its tokens, number of the next leaf), or (−1, leaf) at a contradiction.
     """
-    stack = np.empty((128, 3, 4), np.int64)
-    waiting = np.empty((128, 2), np.int64)  # corner opposite to the halved side, halves done
+    stack = np.empty((DEEPEST + 2, 3, 4), np.int64)
+    waiting = np.empty(
+        (DEEPEST + 2, 2), np.int64
+    )  # corner opposite to the halved side, halves done
     depth = top = 0
     one = np.empty(4, np.int64)
     while True:

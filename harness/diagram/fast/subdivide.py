@@ -13,19 +13,18 @@ from __future__ import annotations
 
 import numpy as np
 
-from harness.diagram.fast.choice import far_of_half, half_of, side_to_halve
-from harness.diagram.fast.examine import NORMS, examine, examine_finely
-from harness.diagram.fast.fine import FINE, FINEST
-from harness.diagram.fast.forms import error_factor, halve
+from harness.diagram.fast.choice import far_of_half, half_of
+from harness.diagram.fast.examine import NORMS, look
+from harness.diagram.fast.fine import FINEST
+from harness.diagram.fast.forms import halve
 from harness.diagram.fast.jit import compiled
 from harness.diagram.fast.leaves import EMPTY, FAILED, HARD
-from harness.diagram.fast.prune import localise
 from harness.diagram.fast.sides import MOST_PAIRED, new_scratch
 from harness.diagram.fast.tables import root_table
 
 LEAF = 3
-#: Corners are exact in doubles: so many halvings between a corner and the root's, else finer.
-FINE_FROM = 50
+#: A triangle is the result of so many halvings at most, else it is handed over as hard.
+DEEPEST = 400
 #: After so many halvings without losing a candidate a triangle is handed over as hard.
 PATIENCE = 200
 
@@ -122,11 +121,10 @@ def subdivide(
     widest = 0
     for r in order:
         widest = max(widest, candidate_count[r])
-    room = 4 * widest + 64
-    tables = np.empty((room, 9))
-    norms = np.empty((room, NORMS))
-    ids = np.empty(room, np.int64)
-    finer_room = (np.empty((widest, 18)), np.empty((widest, NORMS)), np.empty(widest, np.int64))
+    rows = 4 * widest + 64
+    tables = np.empty((rows, 9))
+    norms = np.empty((rows, NORMS))
+    ids = np.empty(rows, np.int64)
     of_root, known = np.empty((widest, 20)), np.zeros(widest, np.bool_)
     frames = np.zeros((256, 6), np.int64)  # start, count, depth, patience, far, fine
     corners = np.zeros((256, 18))
@@ -149,10 +147,12 @@ def subdivide(
         np.zeros(widest + MOST_PAIRED, np.int64),
         np.zeros(widest + MOST_PAIRED, np.int64),
     )
-    sides = np.ones(MOST_PAIRED)
+    share = np.ones(8)
+    room = (np.empty((widest, 18)), np.empty((widest, NORMS)), np.empty(widest, np.int64))
+    desk = (work, np.ones(MOST_PAIRED), scratch, share, room)
+    scene = (definite, world, special)
     statistics = np.zeros(5, np.int64)
     spots = np.empty(3, np.int64)
-    share = np.ones(8)
     e = np.empty(3, np.int64)
     lam = np.empty(18)
     tie_first = world[3]
@@ -202,7 +202,7 @@ def subdivide(
         while top > 0:
             top -= 1
             start, m, depth = frames[top, 0], frames[top, 1], frames[top, 2]
-            patience, far, fine = frames[top, 3], frames[top, 4], frames[top, 5]
+            patience, far = frames[top, 3], frames[top, 4]
             e[:] = exponents[top]
             lam[:] = corners[top]
             for k in range(3):
@@ -214,55 +214,24 @@ def subdivide(
                             spots[k] = corner
             place = (far, spots, e, lam, triangles[root])
             statistics[0] += 1
-            had, k = m, 0
-            if fine == 0:
-                factor = error_factor(depth)
-                localise(norms, start, m, lam, share, 2)
-                m, tests, kind, ports, choice = examine(
-                    tables,
-                    norms,
-                    ids,
-                    start,
-                    m,
-                    factor,
-                    place,
-                    definite,
-                    world,
-                    work,
-                    sides,
-                    scratch,
-                    special,
-                )
-                statistics[1] += tests
-                if kind == FAILED:
-                    k, blurred = side_to_halve(tables, norms, start, m, depth, work[1], factor)
-                    if blurred or max(e[(k + 1) % 3], e[(k + 2) % 3]) >= FINE_FROM:
-                        fine = 1
-                elif kind == HARD:
-                    fine = 1
-            if fine == 1:
-                m, tests, kind, ports, choice = examine_finely(
-                    finer_room,
-                    norms,
-                    ids,
-                    start,
-                    m,
-                    place,
-                    definite,
-                    world,
-                    work,
-                    sides,
-                    scratch,
-                    special,
-                    share,
-                    source,
-                )
-                statistics[1] += tests
-                if kind == FAILED:
-                    k, _ = side_to_halve(finer_room[0], finer_room[1], 0, m, depth, work[1], FINE)
+            had = m
+            m, tests, kind, ports, choice, k, fine = look(
+                tables,
+                norms,
+                ids,
+                start,
+                m,
+                (depth, patience, frames[top, 5] == 1),
+                place,
+                scene,
+                desk,
+                source,
+            )
+            statistics[1] += tests
             patience = 0 if m < had else patience + 1
             if kind == FAILED and (
                 max(e[(k + 1) % 3], e[(k + 2) % 3]) >= FINEST
+                or depth >= DEEPEST
                 or (patience > PATIENCE and m <= 12)
                 or statistics[0] - before > allowed
             ):
@@ -274,7 +243,7 @@ def subdivide(
                 needed = start + 2 * m
                 tables, norms, ids = grown(tables, needed), grown(norms, needed), grown(ids, needed)
                 for a in range(m):
-                    if fine == 0:
+                    if not fine:
                         halve(tables, start + a, k, start + m + a)
                     norms[start + m + a] = norms[start + a]
                     ids[start + m + a] = ids[start + a]
