@@ -195,3 +195,25 @@ def fine_at_length(t, i, j, length_i, length_j, q):
     h, low = times(t[i, q], t[i, 9 + q], length_j[0], length_j[1])
     h, low = plus_product(h, low, t[j, q], t[j, 9 + q], -length_i[0], -length_i[1])
     return h
+
+
+@compiled
+def line_at(t, i, z, x, y):
+    """L of row i at the weights z, x, y of the corners (pairs: double-doubles)."""
+    h, low = times(t[i, 0], t[i, 9], z[0], z[1])
+    h, low = plus_product(h, low, t[i, 1], t[i, 10], x[0], x[1])
+    return plus_product(h, low, t[i, 2], t[i, 11], y[0], y[1])
+
+
+@compiled
+def form_at(t, i, z, x, y):
+    """Q there."""
+    ah, al = times(t[i, 3], t[i, 12], z[0], z[1])
+    ah, al = plus_product(ah, al, 2.0 * t[i, 6], 2.0 * t[i, 15], x[0], x[1])
+    ah, al = plus_product(ah, al, 2.0 * t[i, 7], 2.0 * t[i, 16], y[0], y[1])
+    bh, bl = times(t[i, 4], t[i, 13], x[0], x[1])
+    bh, bl = plus_product(bh, bl, 2.0 * t[i, 8], 2.0 * t[i, 17], y[0], y[1])
+    ch, cl = times(t[i, 5], t[i, 14], y[0], y[1])
+    h, low = times(ah, al, z[0], z[1])
+    h, low = plus_product(h, low, bh, bl, x[0], x[1])
+    return plus_product(h, low, ch, cl, y[0], y[1])

@@ -10,32 +10,10 @@ from __future__ import annotations
 import numpy as np
 
 from harness.diagram.fast.double import plus, plus_product, times
-from harness.diagram.fast.fine import FINE, fine_coefficients
+from harness.diagram.fast.fine import FINE, fine_coefficients, form_at, line_at
 from harness.diagram.fast.forms import value_and_gradient
 from harness.diagram.fast.jit import compiled
 from harness.diagram.fast.leaves import OPEN, hull_determinant, meet
-
-
-@compiled
-def _line_at(t, i, z, x, y):
-    """L at the weights z, x, y (double-doubles that sum to one)."""
-    h, low = times(t[i, 0], t[i, 9], z[0], z[1])
-    h, low = plus_product(h, low, t[i, 1], t[i, 10], x[0], x[1])
-    return plus_product(h, low, t[i, 2], t[i, 11], y[0], y[1])
-
-
-@compiled
-def _form_at(t, i, z, x, y):
-    """Q there."""
-    ah, al = times(t[i, 3], t[i, 12], z[0], z[1])
-    ah, al = plus_product(ah, al, 2.0 * t[i, 6], 2.0 * t[i, 15], x[0], x[1])
-    ah, al = plus_product(ah, al, 2.0 * t[i, 7], 2.0 * t[i, 16], y[0], y[1])
-    bh, bl = times(t[i, 4], t[i, 13], x[0], x[1])
-    bh, bl = plus_product(bh, bl, 2.0 * t[i, 8], 2.0 * t[i, 17], y[0], y[1])
-    ch, cl = times(t[i, 5], t[i, 14], y[0], y[1])
-    h, low = times(ah, al, z[0], z[1])
-    h, low = plus_product(h, low, bh, bl, x[0], x[1])
-    return plus_product(h, low, ch, cl, y[0], y[1])
 
 
 @compiled
@@ -43,8 +21,8 @@ def cubic_at(t, i, j, si, sj, x, y):
     """Q_i sj L_j − Q_j si L_i at λ = (1 − x − y, x, y); x and y are double-doubles (pairs)."""
     s = plus(x[0], x[1], y[0], y[1])
     z = plus(1.0, 0.0, -s[0], -s[1])
-    qi, qj = _form_at(t, i, z, x, y), _form_at(t, j, z, x, y)
-    li, lj = _line_at(t, i, z, x, y), _line_at(t, j, z, x, y)
+    qi, qj = form_at(t, i, z, x, y), form_at(t, j, z, x, y)
+    li, lj = line_at(t, i, z, x, y), line_at(t, j, z, x, y)
     h, low = times(qi[0], qi[1], sj * lj[0], sj * lj[1])
     return plus_product(h, low, qj[0], qj[1], -si * li[0], -si * li[1])[0]
 
@@ -192,7 +170,7 @@ def _lines_meet(t, norms, m, lsign, point):
     for _ in range(4):
         s = plus(x[0], x[1], y[0], y[1])
         z = plus(1.0, 0.0, -s[0], -s[1])
-        f, g = _line_at(t, a, z, x, y)[0], _line_at(t, b, z, x, y)[0]
+        f, g = line_at(t, a, z, x, y)[0], line_at(t, b, z, x, y)[0]
         x = plus(x[0], x[1], -(f * vy - g * uy) / det, 0.0)
         y = plus(y[0], y[1], -(g * ux - f * vx) / det, 0.0)
     point[0], point[1] = x[0], y[0]
@@ -206,5 +184,5 @@ def _lines_meet(t, norms, m, lsign, point):
         size = max(abs(t[c, 0]), abs(t[c, 1]), abs(t[c, 2]))
         bound = 16.0 * FINE * norms[c, 0]
         if c != b and bound < 2.0**-8 * size:
-            count += abs(_line_at(t, c, z, x, y)[0]) <= bound
+            count += abs(line_at(t, c, z, x, y)[0]) <= bound
     return count >= 3

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from harness.diagram.fast.double import plus, plus_product, times
-from harness.diagram.fast.fine import is_fine
+import numpy as np
+
+from harness.diagram.fast.double import plus_product, times
+from harness.diagram.fast.fine import form_at, is_fine, line_at
 from harness.diagram.fast.forms import at_length, relation, surely_positive
 from harness.diagram.fast.jit import compiled
 
@@ -99,18 +101,26 @@ def collinear_beats(tables, i, j, length_i, length_j, bound):
     return True
 
 
+#: Weights of the points at which the best candidate is looked for: the middle and, instead of
+#: corners at infinity, where segments with equal vectors tie, points near them.
+_MIDDLE = np.array([1.0, 1.0, 1.0])
+_NEAR = np.array([[62.0, 1.0, 1.0], [1.0, 62.0, 1.0], [1.0, 1.0, 62.0]])
+
+
 @compiled
-def _best_at(tables, start, m, corner):
+def _best_at(tables, start, m, corner, far):
     """The candidate with the greatest Q/|L| at a corner (3: the middle), in doubles."""
     best, bq, bl = -1, 0.0, 1.0
+    inner = corner == 3 or far >> corner & 1
+    z, x, y = _NEAR[corner] if corner < 3 else _MIDDLE
     for a in range(m):
         r = start + a
-        if corner < 3:
-            q, line = tables[r, 3 + corner], abs(tables[r, corner])
+        if inner:
+            q = z * z * tables[r, 3] + x * x * tables[r, 4] + y * y * tables[r, 5]
+            q += 2.0 * (z * (x * tables[r, 6] + y * tables[r, 7]) + x * y * tables[r, 8])
+            line = abs(z * tables[r, 0] + x * tables[r, 1] + y * tables[r, 2])
         else:
-            q = tables[r, 3] + tables[r, 4] + tables[r, 5]
-            q += 2.0 * (tables[r, 6] + tables[r, 7] + tables[r, 8])
-            line = abs(tables[r, 0] + tables[r, 1] + tables[r, 2])
+            q, line = tables[r, 3 + corner], abs(tables[r, corner])
         if q == 0.0 and line == 0.0:
             continue
         if best < 0 or q * bl > bq * line:
@@ -119,22 +129,22 @@ def _best_at(tables, start, m, corner):
 
 
 @compiled
-def _fine_best_at(tables, start, m, corner):
+def _fine_best_at(tables, start, m, corner, far):
     """The same with fine tables."""
     best = -1
     bq, bl = (0.0, 0.0), (1.0, 0.0)
+    inner = corner == 3 or far >> corner & 1
+    x, y, z = ((0.0, 0.0),) * 3
+    if inner:
+        weights = _NEAR[corner] if corner < 3 else _MIDDLE
+        z, x, y = (weights[0], 0.0), (weights[1], 0.0), (weights[2], 0.0)
     for a in range(m):
-        t = tables[start + a]
-        if corner < 3:
-            q, line = (t[3 + corner], t[12 + corner]), (t[corner], t[9 + corner])
+        r = start + a
+        if inner:
+            q, line = form_at(tables, r, z, x, y), line_at(tables, r, z, x, y)
         else:
-            q = plus(t[6], t[15], t[7], t[16])
-            q = plus(q[0], q[1], t[8], t[17])
-            q = plus(2.0 * q[0], 2.0 * q[1], t[3], t[12])
-            q = plus(q[0], q[1], t[4], t[13])
-            q = plus(q[0], q[1], t[5], t[14])
-            line = plus(t[0], t[9], t[1], t[10])
-            line = plus(line[0], line[1], t[2], t[11])
+            q = (tables[r, 3 + corner], tables[r, 12 + corner])
+            line = (tables[r, corner], tables[r, 9 + corner])
         if line[0] < 0.0:
             line = (-line[0], -line[1])
         if q[0] == 0.0 and line[0] == 0.0:
@@ -153,9 +163,9 @@ def prune(tables, norms, ids, start, m, factor, far, definite, work, world, spot
     count = 0
     for corner in range(4):
         if is_fine(tables):
-            best = _fine_best_at(tables, start, m, corner)
+            best = _fine_best_at(tables, start, m, corner, far)
         else:
-            best = _best_at(tables, start, m, corner)
+            best = _best_at(tables, start, m, corner, far)
         new = best >= 0
         for r in range(count):
             new = new and pivots[r] != best
