@@ -10,9 +10,9 @@ from functools import cached_property
 import numpy as np
 
 from harness.diagram.counts import Counts, Domain, Objective
-from harness.diagram.fast import chains, domains
+from harness.diagram.fast import chains
 from harness.diagram.fast.arrays import Arrays, CornerNode, glued, joined
-from harness.diagram.fast.build import Leaves, candidates_of, find_leaves, open_rows, solve_open
+from harness.diagram.fast.build import Leaves, open_rows, solve_open
 from harness.diagram.fast.decisions import decide_open
 from harness.diagram.fast.hard import LocalMap
 from harness.diagram.fast.nodes import (
@@ -23,10 +23,9 @@ from harness.diagram.fast.nodes import (
     find_nodes,
     unbounded_classes,
 )
-from harness.diagram.fast.plane import plane_roots
 from harness.diagram.fast.prepare import Ints, Prepared, prepare
 from harness.diagram.fast.roots import Roots
-from harness.diagram.fast.ties import Ties, tie_arrays, ties_at_corners
+from harness.diagram.fast.search import search
 from harness.diagram.work import Contradiction, Hopeless, Work
 from harness.geometry.instance import Instance
 from harness.geometry.kernel import Kernel, kernel
@@ -162,27 +161,8 @@ def _attempt(
     seed: int,
     workers: int,
 ) -> FastDiagram:
-    spans: list[tuple[int, int]] = []
-    if domain == "plane":
-        roots = plane_roots(prepared.instance, seed)
-    elif domain == "kernel":
-        assert found is not None
-        roots, spans = domains.kernel_roots(prepared.instance, found, seed)
-    else:
-        assert found is not None
-        roots = domains.interior_roots(prepared.instance, found, seed)
+    roots, leaves = search(prepared, domain, objective, found, seed, workers)
     sense = 1.0 if objective == "smallest" else -1.0
-    definite = domain == "kernel"
-    ties: Ties = set()
-    while True:
-        first, rows = tie_arrays(ties, len(roots.corners.exact))
-        world = (prepared.lines, prepared.lengths, prepared.classes, first, rows)
-        candidates = candidates_of(prepared, roots, found, spans, sense, definite, world)
-        leaves = find_leaves(prepared, roots, candidates, definite, sense, workers, world)
-        new = ties_at_corners(prepared.instance, roots, leaves)
-        if new <= ties:
-            break
-        ties |= new
     rows_open = open_rows(leaves)
     by_balls = decide_open(prepared.instance, roots, leaves, sense)
     still_open = int(leaves.statistics[2] + leaves.statistics[3]) - by_balls

@@ -36,9 +36,8 @@ def decide_open(instance: Instance, roots: Roots, leaves: Leaves, sense: float) 
     for row in rows.tolist():
         leaf = int(shaped[row])
         owners = leaves.slots[leaves.first_slot[leaf] : leaves.first_slot[leaf + 1], 1].tolist()
-        root = int(leaves.shape_roots[row])
-        corners = _corners(roots, root, leaves.weights(row))
-        forms = {k: _forms(instance, k, corners, sense) for k in set(owners)}
+        corners = homogeneous_corners(roots, leaves, row)
+        forms = {k: exact_forms(instance, k, corners, sense) for k in set(owners)}
         kind = leaves.kinds[leaf]
         choice = _quad(owners, forms) if kind == QUAD else OPEN
         if kind == SADDLE:
@@ -54,15 +53,15 @@ def _rational(value: float | Fraction) -> Any:
     return fmpq(exact.numerator, exact.denominator)
 
 
-def _corners(roots: Roots, root: int, shape: list[list[Fraction]]) -> list[tuple[Any, Any, Any]]:
-    """The homogeneous corners of a triangle, exactly."""
+def homogeneous_corners(roots: Roots, leaves: Leaves, row: int) -> list[tuple[Any, Any, Any]]:
+    """The exact corners (x, y, w) of a leaf that is not empty, by its row among these."""
     of_root = [
         (*map(_rational, roots.corners.exact[c]), _rational(roots.corners.weights[c]))
-        for c in roots.triangles[root].tolist()
+        for c in roots.triangles[leaves.shape_roots[row]].tolist()
     ]
     result = []
-    for k in range(3):
-        weights = [_rational(x) for x in shape[k]]
+    for line in leaves.weights(row):
+        weights = [_rational(x) for x in line]
         x, y, w = (
             sum((f * c[axis] for f, c in zip(weights, of_root, strict=True)), fmpq(0))
             for axis in range(3)
@@ -71,7 +70,7 @@ def _corners(roots: Roots, root: int, shape: list[list[Fraction]]) -> list[tuple
     return result
 
 
-def _forms(
+def exact_forms(
     instance: Instance, segment: int, corners: list[tuple[Any, Any, Any]], sense: float
 ) -> list[Any]:
     """The table of a segment, exactly, with L made positive in the triangle."""
@@ -89,7 +88,7 @@ def _forms(
     return table
 
 
-def _cubic(t: list[Any], s: list[Any]) -> list[Any]:
+def exact_cubic(t: list[Any], s: list[Any]) -> list[Any]:
     """The ten coefficients of Q_t L_s − Q_s L_t, positive where the first segment wins."""
     result = []
     for c in range(10):
@@ -105,7 +104,7 @@ def _quad(owners: list[int], forms: dict[int, list[Any]]) -> int:
     out, point = np.empty(3), np.empty(2)
     for x in range(4):
         a, b, c, d = (owners[(x + r) % 4] for r in range(4))
-        f, g, h = (_cubic(forms[a], forms[k]) for k in (b, c, d))
+        f, g, h = (exact_cubic(forms[a], forms[k]) for k in (b, c, d))
         meet(_doubles(f), _doubles(g), point, out)
         px, py = point.tolist()
         if not (px > 0 and py > 0 and px + py < 1):
@@ -118,7 +117,7 @@ def _quad(owners: list[int], forms: dict[int, list[Any]]) -> int:
 
 def _saddle(owners: list[int], forms: dict[int, list[Any]], start: list[float]) -> int:
     """The choice of a saddle: 1 if the owner of slots 0 and 2 wins at the critical point."""
-    f = _cubic(forms[owners[0]], forms[owners[1]])
+    f = exact_cubic(forms[owners[0]], forms[owners[1]])
     first = [f[STEPS[r, 1]] - f[STEPS[r, 0]] for r in range(6)]
     second = [f[STEPS[r, 2]] - f[STEPS[r, 0]] for r in range(6)]
     sign = _sign_where_both_vanish(_raised(first), _raised(second), f, start[0], start[1])
@@ -155,7 +154,7 @@ def _sign_where_both_vanish(f: list[Any], g: list[Any], h: list[Any], x: float, 
     """
     for bits in PRECISIONS:
         with ctx.workprec(2 * bits):
-            box = _enclosed(f, g, x, y, bits)
+            box = enclosed(f, g, x, y, bits)
             if box is None:
                 continue
             px, py = box
@@ -176,7 +175,7 @@ def _jet(cubic: list[Any], x: Any, y: Any) -> list[Any]:
     return out
 
 
-def _enclosed(f: list[Any], g: list[Any], x: float, y: float, bits: int) -> tuple[Any, Any] | None:
+def enclosed(f: list[Any], g: list[Any], x: float, y: float, bits: int) -> tuple[Any, Any] | None:
     """A box about a common zero of f and g (Krawczyk's test), or None."""
     fb, gb = [arb(c) for c in f], [arb(c) for c in g]
     px, py = arb(x), arb(y)

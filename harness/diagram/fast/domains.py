@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from functools import partial
 
 import numpy as np
 
-from harness.diagram.fast.plane import clipped_ears, refined
+from harness.diagram.fast.plane import clipped_ears, lines_through, refined, with_points
 from harness.diagram.fast.roots import (
     Corners,
     Roots,
@@ -24,17 +24,18 @@ from harness.geometry.predicates import orientation
 
 
 def kernel_roots(
-    instance: Instance, kernel: Kernel, seed: int
+    instance: Instance, kernel: Kernel, seed: int, hubs: Sequence[RationalPoint] = ()
 ) -> tuple[Roots, list[tuple[int, int]]]:
     """Roots of a kernel with m sides, and the *spans* of the chord triangles.
 
-    The triangles 0 … m − 1 cut off the corners; triangle m + k has the span ``spans[k]``: all of
+    ``hubs`` inside become special corners, and then there are no spans.  Otherwise the triangles
+    0 … m − 1 cut off the corners; triangle m + k has the span ``spans[k]``: all of
     it lies beyond the chord from g_i to g_j, for i < j < i + m.
     """
     corners, m = Corners(), len(kernel.sides)
     flat = _flat_points(instance, kernel)
-    if flat:
-        return _kernel_with_flat_points(instance, kernel, flat, seed)
+    if flat or hubs:
+        return _kernel_with_points(instance, kernel, flat, hubs, seed)
     ends = _endpoint_numbers(instance, kernel)
     for k, point in enumerate(kernel.corners):
         corners.add(point, ends[k], special=True)
@@ -123,10 +124,15 @@ def _strictly_inside(a: RationalPoint, b: RationalPoint, p: RationalPoint) -> bo
     return min(a, b) < p < max(a, b)
 
 
-def _kernel_with_flat_points(
-    instance: Instance, kernel: Kernel, flat: dict[int, list[RationalPoint]], seed: int
+def _kernel_with_points(
+    instance: Instance,
+    kernel: Kernel,
+    flat: dict[int, list[RationalPoint]],
+    hubs: Sequence[RationalPoint],
+    seed: int,
 ) -> tuple[Roots, list[tuple[int, int]]]:
-    """The kernel as a fan, if vertices of the polygon lie inside its sides."""
+    """The kernel as a fan if vertices of the polygon lie inside its sides; with hubs triangulated
+    and refined."""
     points: list[RationalPoint] = []
     wall: list[int] = []
     lines: list[int] = []
@@ -141,7 +147,26 @@ def _kernel_with_flat_points(
         row = {edge: 2 * edge for edge in (lines[k - 1], lines[k])}
         row |= {edge: 2 * edge + 1 for edge in touching[point]}
         incident.append(sorted(row.values()))
+    if hubs:
+        return _with_hubs(instance, points, incident, wall, hubs, seed), []
     return fan(points, incident, wall, free_point(kernel.corners, seed), seed), []
+
+
+def _with_hubs(
+    instance: Instance,
+    points: list[RationalPoint],
+    incident: list[list[int]],
+    wall: list[int],
+    hubs: Sequence[RationalPoint],
+    seed: int,
+) -> Roots:
+    """Roots of a polygon, given with what :func:`fan` takes, with special corners inside."""
+    n = len(points)
+    around = list(points)
+    triangles = with_points(around, clipped_ears(points), hubs)
+    rows = incident + [lines_through(instance, point) for point in hubs]
+    walls = {(k, (k + 1) % n): wall[k] for k in range(n)}
+    return refined(around, rows, triangles, walls, seed)
 
 
 def segments_at(
@@ -188,14 +213,18 @@ def fan(
     return _roots(corners, triangles, walls)
 
 
-def interior_roots(instance: Instance, kernel: Kernel, seed: int) -> Roots:
-    """Roots of the interior of a polygon."""
+def interior_roots(
+    instance: Instance, kernel: Kernel, seed: int, hubs: Sequence[RationalPoint] = ()
+) -> Roots:
+    """Roots of the interior of a polygon; ``hubs`` inside become special corners."""
     n = instance.n
     order = range(n) if instance.orientation > 0 else range(n - 1, -1, -1)
     points = [instance.exact_vertex(k) for k in order]
     touching = segments_at(instance, points)
     incident = [[2 * edge + 1 for edge in touching[point]] for point in points]
     wall = list(range(n))
+    if hubs:
+        return _with_hubs(instance, points, incident, wall, hubs, seed)
     if kernel.has_interior:
         return fan(points, incident, wall, free_point(kernel.corners, seed), seed)
     return refined(

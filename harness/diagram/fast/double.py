@@ -18,7 +18,7 @@ from harness.diagram.fast.jit import compiled
 TINY = 1e-100
 
 
-@intrinsic
+@intrinsic  # type: ignore[untyped-decorator]  # numba has no types
 def fma(typing_context: Any, x: Any, y: Any, z: Any) -> Any:
     """x·y + z, rounded once."""
 

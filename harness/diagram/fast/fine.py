@@ -10,8 +10,8 @@ S added to every length.  Coordinates are given up to u²S, and an operation is 
 relatively (:mod:`harness.diagram.fast.double`).  Differences then are off by 3u² relatively and
 2u²S; an L of the root triangle by (2·3 + 5 + 3)u²·ML and 4u²·ML for the coordinates, together less
 than 20u²·ML; a q likewise by less than 30u²·MQ.  The sums with λ add 5 + 2·3 for each λ: L is off
-by at most 31u²·ML, q by 52u²·MQ, a product q·L by 88u²·MQ·ML.  A cubic's coefficient times three is a
-sum of at most six such products with weights that add up to 3 + 3: six more sums.  Altogether
+by at most 31u²·ML, q by 52u²·MQ, a product q·L by 88u²·MQ·ML.  A cubic's coefficient times three is
+a sum of at most six such products with weights that add up to 3 + 3: six more sums.  Altogether
 
     |error of a coefficient| ≤ 106 u² (MQ_i ML_j + MQ_j ML_i) < FINE (MQ_i ML_j + MQ_j ML_i);
 

@@ -122,6 +122,11 @@ TERMS = np.array(
 SUPPORT = np.array([1, 2, 4, 3, 5, 3, 6, 5, 6, 7])
 
 
+#: Whether corner k counts at least twice in the index of a coefficient.
+AT_LEAST_TWICE = np.zeros((3, 10), np.bool_)
+AT_LEAST_TWICE[0, [0, 3, 4]] = AT_LEAST_TWICE[1, [1, 5, 6]] = AT_LEAST_TWICE[2, [2, 7, 8]] = True
+
+
 @compiled
 def coefficients(tables, i, j, si, sj):
     """The ten coefficients of Q_i sj L_j − Q_j si L_i, of the candidates in rows i and j."""
@@ -153,10 +158,11 @@ def relation(i, j, classes, tie_first, ties, spots):
     """What is known by construction about the pair i, j over a triangle, as bits.
 
     Bit 0: the segments have the same vector up to sign, so that at infinity their L are equal up
-    to sign.  Bits 1 … 3: F⁺_ij is zero at corner 0, 1, 2 of the triangle; bits 4 … 6: F⁻_ij is.
+    to sign.  Bits 1 … 3: F⁺_ij is zero at corner 0, 1, 2 of the triangle; bits 4 … 6: F⁻_ij is;
+    bits 7 … 9: the one of them that vanishes at infinity is zero there with its gradient.
     ``spots``: the numbers of the triangle's corners among the corners of roots, or −1; at some
-    of these ties are known (``ties`` rows: i, j, 1 for F⁺ or 2 for F⁻ or 3, from ``tie_first``
-    on).
+    of these ties are known (``ties`` rows: i, j, 1 for F⁺ or 2 for F⁻ or 3, or 4 for a zero
+    with the gradient, from ``tie_first`` on).
     """
     bits = 1 if classes[i] >= 0 and classes[i] == classes[j] else 0
     for k in range(3):
@@ -165,7 +171,9 @@ def relation(i, j, classes, tie_first, ties, spots):
                 if (ties[row, 0] == i and ties[row, 1] == j) or (
                     ties[row, 0] == j and ties[row, 1] == i
                 ):
-                    bits |= (ties[row, 2] & 1) << (k + 1) | (ties[row, 2] >> 1) << (k + 4)
+                    which = ties[row, 2]
+                    bits |= (which & 1) << (k + 1) | (which >> 1 & 1) << (k + 4)
+                    bits |= (which >> 2) << (k + 7)
     return bits
 
 
@@ -192,6 +200,9 @@ def is_structural_zero(c, tables, i, j, si, sj, far, known):
             if SUPPORT[c] >> k & 1 and sj * tables[j, k] != si * tables[i, k]:
                 return False
         return True
+    for k in range(3):
+        if known >> (k + 7) & 1 and AT_LEAST_TWICE[k, c]:
+            return bool(sj * tables[j, k] == si * tables[i, k])
     return False
 
 

@@ -221,9 +221,8 @@ def glue_tree(
     Returns (position after its tokens, number of the next leaf), or (−1, leaf) at a contradiction.
     """
     stack = np.empty((DEEPEST + 2, 3, 4), np.int64)
-    waiting = np.empty(
-        (DEEPEST + 2, 2), np.int64
-    )  # corner opposite to the halved side, halves done
+    # Corner opposite to the halved side, halves done.
+    waiting = np.empty((DEEPEST + 2, 2), np.int64)
     depth = top = 0
     one = np.empty(4, np.int64)
     while True:

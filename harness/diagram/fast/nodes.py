@@ -49,15 +49,24 @@ def find_nodes(
     for v, node in arrays.special.items():
         kind[v] = KINDS.index(node.kind)
     degree = np.diff(arrays.out_first)
-    everywhere = corner_nodes(roots, leaves, arrays)
-    corners = [node for node in everywhere if roots.corners.weights[node.corner]]
-    far = [node for node in everywhere if not roots.corners.weights[node.corner]]
+    on_walls = {corner for side in roots.walls for corner in side}
+    everywhere = []
+    for met in corner_nodes(roots, leaves, arrays):
+        if len(met.ports) == 2 and _is_hub(roots, met.corner, on_walls):
+            one, two = met.ports  # an edge that passes through, without a node
+            arrays.mate[one], arrays.mate[two] = two, one
+        else:
+            everywhere.append(met)
+    corners = [met for met in everywhere if roots.corners.weights[met.corner]]
+    far = [met for met in everywhere if not roots.corners.weights[met.corner]]
     of_port = np.full(len(arrays.place), -1, dtype=np.int64)
     corner_kinds = []
     for k, corner in enumerate(corners):
         of_port[corner.ports] = n_vertices + k
         corner_kinds.append(
-            corner_kind(prepared.instance, roots, arrays, corner) if in_plane else BOUNDARY
+            BOUNDARY
+            if corner.corner in on_walls
+            else corner_kind(prepared.instance, roots, arrays, corner)
         )
     loose = np.flatnonzero((arrays.inward >= 0) & (arrays.mate < 0) & (of_port < 0))
     of_port[loose] = n_vertices + len(corners) + np.arange(len(loose))
@@ -74,6 +83,12 @@ def find_nodes(
     )
 
 
+def _is_hub(roots: Roots, corner: int, on_walls: set[int]) -> bool:
+    """Whether a special corner is neither on the boundary, nor at infinity, nor an endpoint."""
+    ends = any(z & 1 for z in roots.corners.incident[corner])
+    return bool(roots.corners.weights[corner]) and corner not in on_walls and not ends
+
+
 def owners_around(arrays: Arrays, corner: CornerNode) -> list[int]:
     """The segments whose cells meet at a special corner."""
     around: set[int] = set()
@@ -84,7 +99,7 @@ def owners_around(arrays: Arrays, corner: CornerNode) -> list[int]:
 
 
 def corner_kind(instance: Instance, roots: Roots, arrays: Arrays, corner: CornerNode) -> int:
-    """The kind of a node at a segment's endpoint in the plane.
+    """The kind of a node at a segment's endpoint or a hub.
 
     With up to two edges it is an ``endpoint``; with more a vertex: a crossing if the point lies on
     the extension of another segment whose cell is there (angle 0), else a triple point or saddle.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Iterable
 from fractions import Fraction
 from functools import cmp_to_key
 from itertools import pairwise
@@ -44,6 +45,30 @@ def clipped_ears(points: list[RationalPoint]) -> list[tuple[int, int, int]]:
     return triangles
 
 
+def with_points(
+    points: list[RationalPoint],
+    triangles: list[tuple[int, int, int]],
+    more: Iterable[RationalPoint],
+) -> list[tuple[int, int, int]]:
+    """A triangulation of ``points`` with more points inside, which are appended to ``points``.
+
+    O(triangles) for each.
+    """
+    for p in more:
+        new = len(points)
+        points.append(p)
+        result = []
+        for a, b, c in triangles:
+            if not _in_triangle(p, points[a], points[b], points[c]):
+                result.append((a, b, c))
+                continue
+            for x, y in ((a, b), (b, c), (c, a)):
+                if orientation(points[x], points[y], p) > 0:  # else p lies on that side
+                    result.append((x, y, new))
+        triangles = result
+    return triangles
+
+
 def _in_triangle(p: RationalPoint, a: RationalPoint, b: RationalPoint, c: RationalPoint) -> bool:
     """Whether p lies in a closed counter-clockwise triangle."""
     return orientation(a, b, p) >= 0 and orientation(b, c, p) >= 0 and orientation(c, a, p) >= 0
@@ -55,15 +80,17 @@ def refined(
     triangles: list[tuple[int, int, int]],
     walls: dict[tuple[int, int], int],
     seed: int,
+    free: frozenset[int] = frozenset(),
 ) -> Roots:
     """A triangulation in which no two of the given points (but along walls) are neighbours.
 
-    Every triangle gets a free point, every side that is no wall a free point close to it, on the
-    line from its middle to the free point of one of its triangles.
+    All points are special but those numbered in ``free``.  Every triangle gets a free point, every
+    side that is no wall a free point close to it, on the line from its middle to the free point of
+    one of its triangles.
     """
     corners = Corners()
     for point, row in zip(points, incident, strict=True):
-        corners.add(point, row, special=bool(row))
+        corners.add(point, row, special=len(corners.exact) not in free)
     middles = []
     for t, (a, b, c) in enumerate(triangles):
         u, v = free_number(3 * t, seed), free_number(3 * t + 1, seed)
@@ -84,12 +111,12 @@ def refined(
             a, b = corner[k], corner[(k + 1) % 3]
             side = frozenset((a, b))
             if (a, b) in walls:
-                free = free_wall_point(corners, a, b, a, seed)
-                result += [(middles[t], a, free), (middles[t], free, b)]
-                pieces[a, free] = pieces[free, b] = walls[a, b]
+                on_wall = free_wall_point(corners, a, b, a, seed)
+                result += [(middles[t], a, on_wall), (middles[t], on_wall, b)]
+                pieces[a, on_wall] = pieces[on_wall, b] = walls[a, b]
                 region_of += [t, t]
                 continue
-            if len(across[side]) == 1 or not (incident[a] and incident[b]):
+            if len(across[side]) == 1 or a in free or b in free:
                 result.append((middles[t], a, b))
                 region_of.append(t)
                 continue
@@ -130,8 +157,13 @@ def _bend(
     raise Contradiction("no room for a free point beside a side")
 
 
-def plane_roots(instance: Instance, seed: int) -> Roots:
-    """Roots of the whole plane."""
+def plane_roots(
+    instance: Instance,
+    seed: int,
+    hubs: Iterable[RationalPoint] = (),
+    directions: Iterable[RationalPoint] = (),
+) -> Roots:
+    """Roots of the whole plane; ``hubs`` and ``directions`` become special corners."""
     from scipy.spatial import Delaunay
 
     segments = instance.rational_segments()
@@ -139,6 +171,8 @@ def plane_roots(instance: Instance, seed: int) -> Roots:
     for k, segment in enumerate(segments):
         for point in segment:
             touching[point].append(2 * k + 1)
+    for point in hubs:
+        touching[point] += lines_through(instance, point)
     points = list(touching)
     origin = points[0]
     floats = np.array([[float(x - origin[0]), float(y - origin[1])] for x, y in points])
@@ -164,17 +198,22 @@ def plane_roots(instance: Instance, seed: int) -> Roots:
         if turn_sign == 0:
             raise Contradiction("the triangulation of the endpoints is degenerate")
         triangles.append((a, b, c) if turn_sign > 0 else (a, c, b))
-    inner = refined(points, incident, triangles, {}, seed)
     n = len(points)
-    directions: list[RationalPoint] = [
+    inner = refined(points, incident, triangles, {}, seed, frozenset((n - 3, n - 2, n - 1)))
+    outermost: list[RationalPoint] = [
         (Fraction(float(x - centre[0])), Fraction(float(y - centre[1]))) for x, y in floats[-3:]
     ]
     outer = []
     marked = parallel_directions(instance)
-    ends = [inner.corners.add(d, weight=0.0) for d in directions]
+    parallel = [d for d, _ in marked]
+    for direction in directions:
+        if not any(_same_direction(direction, d) for d in parallel):
+            parallel.append(direction)
+            marked.append((direction, []))
+    ends = [inner.corners.add(d, weight=0.0) for d in outermost]
     for k in range(3):
         a, b = n - 3 + k, n - 3 + (k + 1) % 3
-        low, high = directions[k], directions[(k + 1) % 3]
+        low, high = outermost[k], outermost[(k + 1) % 3]
         between_them = [(d, row) for d, row in marked if turns_left(low, d) and turns_left(d, high)]
         between_them.sort(key=cmp_to_key(_by_turn))
         chain = [ends[k]]
@@ -193,6 +232,19 @@ def plane_roots(instance: Instance, seed: int) -> Roots:
         inner.regions,
         np.concatenate([inner.region_of, np.full(len(outer), -1)]),
     )
+
+
+def lines_through(instance: Instance, point: RationalPoint) -> list[int]:
+    """2·segment for all segments whose line passes through a point."""
+    return [
+        2 * k
+        for k, (a, b) in enumerate(instance.rational_segments())
+        if orientation(a, b, point) == 0
+    ]
+
+
+def _same_direction(d: RationalPoint, e: RationalPoint) -> bool:
+    return d[0] * e[1] == d[1] * e[0] and d[0] * e[0] + d[1] * e[1] > 0
 
 
 def _by_turn(x: tuple[RationalPoint, list[int]], y: tuple[RationalPoint, list[int]]) -> int:

@@ -95,6 +95,9 @@ def all_pairs(tables, start, m, sides, norms, factor, far, world, spots, ids, w)
                     divided_by_distance(values[a, b], near)
                     bound *= 9.0
                     sure_signs(values[a, b], bound, signs[a, b])
+                    for k in range(3):
+                        if known >> (k + 7) & 1 and k != near:
+                            values[a, b, k], signs[a, b, k] = 0.0, 0
             bounds[a, b] = bounds[b, a] = bound
             for c in range(10):
                 values[b, a, c] = -values[a, b, c]

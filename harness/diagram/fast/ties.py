@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from itertools import combinations
 
@@ -13,14 +14,14 @@ from harness.diagram.fast.roots import Roots
 from harness.diagram.planar_map import RationalPoint
 from harness.geometry.instance import Instance
 
-#: Rows (corner, i, j, 1 for F⁺ or 2 for F⁻ or 3).
+#: Rows (corner, i, j, 1 for F⁺ or 2 for F⁻ or 3; or 4: F vanishes twice, at infinity).
 Ties = set[tuple[int, int, int, int]]
+TWICE = 4
 
 
 def ties_at_corners(instance: Instance, roots: Roots, leaves: Leaves) -> Ties:
     """Pairs of candidates of hard leaves whose F is zero at a corner of a root in that leaf."""
-    found: Ties = set()
-    seen: set[tuple[int, int, int]] = set()
+    wanted: dict[int, set[int]] = {}
     for number, row in enumerate(open_rows(leaves).tolist()):
         ids = leaves.open_ids[leaves.open_first[number] : leaves.open_first[number + 1]].tolist()
         shape = leaves.shapes[row].reshape(3, 3)
@@ -28,21 +29,62 @@ def ties_at_corners(instance: Instance, roots: Roots, leaves: Leaves) -> Ties:
             if np.count_nonzero(shape[k]) != 1:
                 continue
             corner = int(roots.triangles[leaves.shape_roots[row], int(shape[k].argmax())])
-            if not roots.corners.weights[corner]:
-                continue
-            for i, j in combinations(sorted(ids), 2):
-                if (corner, i, j) not in seen:
-                    seen.add((corner, i, j))
-                    which = _tie(instance, i, j, roots.corners.exact[corner])
-                    if which:
-                        found.add((corner, i, j, which))
+            if roots.corners.special[corner]:
+                wanted.setdefault(corner, set()).update(ids)
+    return {row for corner, ids in wanted.items() for row in _ties(instance, roots, corner, ids)}
+
+
+def ties_at_hubs(
+    instance: Instance,
+    roots: Roots,
+    points: Mapping[RationalPoint, list[int]],
+    directions: Mapping[RationalPoint, list[int]],
+) -> Ties:
+    """Ties at hubs, between the segments of the leaves in which they were found."""
+    found: Ties = set()
+    for corner, (point, weight) in enumerate(
+        zip(roots.corners.exact, roots.corners.weights, strict=True)
+    ):
+        ids = points.get(point, ()) if weight else directions.get(point, ())
+        found |= set(_ties(instance, roots, corner, ids))
     return found
+
+
+def _ties(
+    instance: Instance, roots: Roots, corner: int, ids: Iterable[int]
+) -> list[tuple[int, int, int, int]]:
+    """All ties of some segments at a corner."""
+    p = roots.corners.exact[corner]
+    tie = _tie if roots.corners.weights[corner] else _tie_far
+    rows = []
+    for i, j in combinations(sorted(ids), 2):
+        which = tie(instance, i, j, p)
+        if which:
+            rows.append((corner, i, j, which))
+    return rows
 
 
 def _tie(instance: Instance, i: int, j: int, p: RationalPoint) -> int:
     """1 if F⁺_ij is zero at p, 2 if F⁻_ij is, 3 if both are, 0 if none."""
     (qi, li), (qj, lj) = _forms(instance, i, p), _forms(instance, j, p)
     return (1 if qi * lj == qj * li else 0) + (2 if qi * lj == -qj * li else 0)
+
+
+def _tie_far(instance: Instance, i: int, j: int, d: RationalPoint) -> int:
+    """The same at infinity, in the direction d; or TWICE.
+
+    There Q is |d|² and L is −d × v.  If both have the vector v, and δ is the difference of their
+    middles, F is w·(|d|² (v × δ) + 2 (δ·d)(d × v)) to first order in w.
+    """
+    (a, b), (c, e) = instance.rational_segment(i), instance.rational_segment(j)
+    v, w = (b[0] - a[0], b[1] - a[1]), (e[0] - c[0], e[1] - c[1])
+    li, lj = d[0] * v[1] - d[1] * v[0], d[0] * w[1] - d[1] * w[0]
+    if v not in (w, (-w[0], -w[1])):
+        return (1 if li == lj else 0) + (2 if li == -lj else 0)
+    delta = (a[0] + b[0] - c[0] - e[0], a[1] + b[1] - c[1] - e[1])
+    square = d[0] ** 2 + d[1] ** 2
+    along, across = delta[0] * d[0] + delta[1] * d[1], v[0] * delta[1] - v[1] * delta[0]
+    return TWICE if li != 0 and square * across + 2 * along * li == 0 else 0
 
 
 def _forms(instance: Instance, k: int, p: RationalPoint) -> tuple[Fraction, Fraction]:
