@@ -21,7 +21,7 @@ from harness.diagram.planar_map import RationalPoint
 from harness.diagram.work import Contradiction
 from harness.geometry.kernel import Kernel
 
-#: Triangles in one root, at most (and at most 20,000 + 1,000 m² with m candidates): so degenerate
+#: Triangles in one root, at most (and at most 2,000 + 300 m² with m candidates): so degenerate
 #: that halving does not end, and that no test stops it, is no input we know.
 MOST_TRIANGLES = 3_000_000
 #: A root with so many candidates is cut into 2^CUTS parts.

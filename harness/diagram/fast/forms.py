@@ -38,7 +38,7 @@ from __future__ import annotations
 import numpy as np
 
 from harness.diagram.fast.double import TINY
-from harness.diagram.fast.fine import fine_at_length, fine_coefficients, is_fine
+from harness.diagram.fast.fine import fine_coefficients, is_fine
 from harness.diagram.fast.jit import compiled
 
 U = 2.0**-53
@@ -300,30 +300,6 @@ def cubic(tables, i, j, si, sj, bound, far, known, values, signs):
         else:
             signs[c] = UNKNOWN
         values[c] = value
-
-
-@compiled
-def at_length(tables, i, j, length_i, length_j, q):
-    """q_i·length_j − q_j·length_i for an entry q of Q; lengths (2,) in double-double."""
-    if is_fine(tables):
-        return fine_at_length(tables, i, j, length_i, length_j, q)
-    return tables[i, q] * length_j[0] - tables[j, q] * length_i[0]
-
-
-@compiled
-def collinear_quadratic(tables, i, j, length_i, length_j, values):
-    """The same for two segments on one line: |L| is a common factor, what is left is
-
-    G = Q_i/length_i − Q_j/length_j times both lengths, raised to degree three.  The signs are left
-    to the caller: raising the degree rounds once more.
-    """
-    g200 = at_length(tables, i, j, length_i, length_j, 3)
-    g020 = at_length(tables, i, j, length_i, length_j, 4)
-    g002 = at_length(tables, i, j, length_i, length_j, 5)
-    g110 = at_length(tables, i, j, length_i, length_j, 6)
-    g101 = at_length(tables, i, j, length_i, length_j, 7)
-    g011 = at_length(tables, i, j, length_i, length_j, 8)
-    raise_degree(g200, g020, g002, g110, g101, g011, values)
 
 
 @compiled

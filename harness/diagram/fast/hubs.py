@@ -107,6 +107,10 @@ def _halving(instance: Instance, i: int, j: int) -> Iterator[RationalPoint]:
     (a, b), (c, d) = instance.rational_segment(i), instance.rational_segment(j)
     v = (b[0] - a[0], b[1] - a[1])
     delta = (a[0] + b[0] - c[0] - d[0], a[1] + b[1] - c[1] - d[1])
+    if v[0] * delta[1] == v[1] * delta[0]:  # on one line, or with one middle
+        yield -v[1], v[0]
+        yield v[1], -v[0]
+        return
     root = _square_root((v[0] ** 2 + v[1] ** 2) * (delta[0] ** 2 + delta[1] ** 2))
     if root is None:
         return

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from harness.diagram.fast.collinear import collinear_beats
 from harness.diagram.fast.double import plus_product, times
 from harness.diagram.fast.fine import form_at, is_fine, line_at
-from harness.diagram.fast.forms import at_length, relation, surely_positive
+from harness.diagram.fast.forms import relation, surely_positive
 from harness.diagram.fast.jit import compiled
 
 
@@ -90,15 +91,6 @@ def beats(tables, i, j, lt, ls, qt, qs, bound, far, known):
             return one or surely_positive(tables, i, j, -1.0, ls, bound, far, known)
         return one and surely_positive(tables, i, j, -1.0, ls, bound, far, known)
     return False
-
-
-@compiled
-def collinear_beats(tables, i, j, length_i, length_j, bound):
-    """The same for two segments on one line: G > 0."""
-    for k in range(3, 9):
-        if not at_length(tables, i, j, length_i, length_j, k) > bound:
-            return False
-    return True
 
 
 #: Weights of the points at which the best candidate is looked for: the middle and, instead of
@@ -222,7 +214,10 @@ def _tested(tables, norms, ids, start, p, a, lsign, qsign, factor, far, world, s
     i, j = ids[start + p], ids[start + a]
     if lines[i] >= 0 and lines[i] == lines[j]:
         bound = factor * (norms[start + p, 1] * lengths[j, 0] + norms[start + a, 1] * lengths[i, 0])
-        return collinear_beats(tables, start + p, start + a, lengths[i], lengths[j], bound)
+        known = relation(i, j, classes, tie_first, ties, spots)
+        return collinear_beats(
+            tables, start + p, start + a, lengths[i], lengths[j], bound, far, known
+        )
     bound = factor * (
         norms[start + p, 1] * norms[start + a, 0] + norms[start + a, 1] * norms[start + p, 0]
     )

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from harness.diagram.fast.collinear import collinear_cubic
 from harness.diagram.fast.fine import is_fine
 from harness.diagram.fast.forms import (
     SIDES,
     UNKNOWN,
     U,
-    collinear_quadratic,
     cubic,
     divided_by_distance,
     relation,
@@ -66,11 +66,18 @@ def all_pairs(tables, start, m, sides, norms, factor, far, world, spots, ids, w)
                 bound = factor * (
                     norms[start + a, 1] * lengths[j, 0] + norms[start + b, 1] * lengths[i, 0]
                 )
-                collinear_quadratic(
-                    tables, start + a, start + b, lengths[i], lengths[j], values[a, b]
+                bound = collinear_cubic(
+                    tables,
+                    start + a,
+                    start + b,
+                    lengths[i],
+                    lengths[j],
+                    bound,
+                    far,
+                    relation(i, j, classes, tie_first, ties, spots),
+                    values[a, b],
+                    signs[a, b],
                 )
-                bound += rounding(tables, values[a, b])
-                sure_signs(values[a, b], bound, signs[a, b])
             else:
                 bound = factor * (
                     norms[start + a, 1] * norms[start + b, 0]

@@ -197,7 +197,7 @@ def subdivide(
         frames[0, 0], frames[0, 1], frames[0, 2] = 0, m, len(path)
         frames[0, 3], frames[0, 4], frames[0, 5] = 0, far, 0
         before = statistics[0]
-        allowed = min(most, 20_000 + 1_000 * m * m)
+        allowed = min(most, 2_000 + 300 * m * m)
         top = 1
         while top > 0:
             top -= 1
