@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from harness.diagram.fast.choice import side_to_halve
 from harness.diagram.fast.classify import (
     beaten_by_two,
@@ -14,9 +16,10 @@ from harness.diagram.fast.fine_points import fine_quad_choice, suspects_hub
 from harness.diagram.fast.forms import error_factor, relation
 from harness.diagram.fast.jit import compiled
 from harness.diagram.fast.leaves import EMPTY, FAILED, HARD, OPEN, QUAD
+from harness.diagram.fast.memory import borrowed
 from harness.diagram.fast.mixed import classify_mixed
 from harness.diagram.fast.prune import keep, localise, prune
-from harness.diagram.fast.sides import MOST_PAIRED, all_pairs
+from harness.diagram.fast.sides import MOST_PAIRED, all_pairs, new_scratch
 
 #: Columns of ``norms``: ML and MQ on the triangle, on the root; flags; number of the candidate in
 #: its root; ML and MQ of the fine table.
@@ -25,6 +28,42 @@ NORMS = 8
 FINE_FROM = 50
 #: After so many halvings without losing a candidate a tie of many is suspected.
 HUB = 5
+
+
+@compiled
+def new_desk(widest):
+    """Working space for ``examine`` with up to ``widest`` candidates."""
+    rows = widest + MOST_PAIRED
+    return (
+        (np.zeros(4, np.int64), np.zeros(rows, np.int64), np.zeros(rows, np.int64)),
+        np.zeros(rows, np.int64),
+        np.ones(MOST_PAIRED),
+        new_scratch(),
+        np.ones(8),
+        (np.empty((widest, 18)), np.empty((widest, NORMS)), np.empty(widest, np.int64)),
+    )
+
+
+@compiled
+def borrowed_desk(desk):
+    """(work, sides, scratch, share, room for fine tables), borrowed from what ``new_desk`` made."""
+    pivots, beaten, sides, scratch, share, room = desk
+    return (
+        (borrowed(pivots[0]), borrowed(pivots[1]), borrowed(pivots[2]), borrowed(beaten)),
+        borrowed(sides),
+        (
+            borrowed(scratch[0]),
+            borrowed(scratch[1]),
+            borrowed(scratch[2]),
+            borrowed(scratch[3]),
+            borrowed(scratch[4]),
+            borrowed(scratch[5]),
+            borrowed(scratch[6]),
+            borrowed(scratch[7]),
+        ),
+        borrowed(share),
+        (borrowed(room[0]), borrowed(room[1]), borrowed(room[2])),
+    )
 
 
 @compiled

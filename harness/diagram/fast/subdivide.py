@@ -14,12 +14,12 @@ from __future__ import annotations
 import numpy as np
 
 from harness.diagram.fast.choice import far_of_half, half_of
-from harness.diagram.fast.examine import NORMS, look
+from harness.diagram.fast.examine import NORMS, borrowed_desk, look, new_desk
 from harness.diagram.fast.fine import FINEST
 from harness.diagram.fast.forms import halve
 from harness.diagram.fast.jit import compiled
 from harness.diagram.fast.leaves import EMPTY, FAILED, HARD
-from harness.diagram.fast.sides import MOST_PAIRED, new_scratch
+from harness.diagram.fast.memory import borrowed, release
 from harness.diagram.fast.tables import root_table
 
 LEAF = 3
@@ -122,13 +122,15 @@ def subdivide(
     for r in order:
         widest = max(widest, candidate_count[r])
     rows = 4 * widest + 64
-    tables = np.empty((rows, 9))
-    norms = np.empty((rows, NORMS))
-    ids = np.empty(rows, np.int64)
-    of_root, known = np.empty((widest, 20)), np.zeros(widest, np.bool_)
-    frames = np.zeros((256, 6), np.int64)  # start, count, depth, patience, far, fine
-    corners = np.zeros((256, 18))
-    exponents = np.zeros((256, 3), np.int64)
+    kept = (np.empty((rows, 9)), np.empty((rows, NORMS)), np.empty(rows, np.int64))
+    tables, norms, ids = borrowed(kept[0]), borrowed(kept[1]), borrowed(kept[2])
+    # Start, count, depth, patience, far, fine; corners and halvings behind them.
+    kept_frames = (np.zeros((256, 6), np.int64), np.zeros((256, 18)), np.zeros((256, 3), np.int64))
+    frames, corners = borrowed(kept_frames[0]), borrowed(kept_frames[1])
+    exponents = borrowed(kept_frames[2])
+    kept_root = (np.empty((widest, 20)), np.zeros(widest, np.bool_), np.empty((3, 4)), np.empty(3))
+    of_root, known = borrowed(kept_root[0]), borrowed(kept_root[1])
+    root_corners, root_weights = borrowed(kept_root[2]), borrowed(kept_root[3])
     tokens = np.empty(1024, np.int8)
     kinds = np.empty(512, np.int8)
     choices = np.empty(512, np.int8)
@@ -140,24 +142,25 @@ def subdivide(
     open_first = np.empty(65, np.int64)
     open_ids = np.empty(256, np.int64)
     n_tokens = n_leaves = n_slots = n_shapes = n_open = n_open_ids = 0
-    scratch = new_scratch()
-    work = (
-        np.zeros(4, np.int64),
-        np.zeros(widest + MOST_PAIRED, np.int64),
-        np.zeros(widest + MOST_PAIRED, np.int64),
-        np.zeros(widest + MOST_PAIRED, np.int64),
+    kept_desk = new_desk(widest)
+    desk = borrowed_desk(kept_desk)
+    scratch = desk[2]
+    segments, triangles = borrowed(segments), borrowed(triangles)
+    special, tie_first = borrowed(special), borrowed(world[3])
+    scene = (
+        definite,
+        (
+            borrowed(world[0]),
+            borrowed(world[1]),
+            borrowed(world[2]),
+            tie_first,
+            borrowed(world[4]),
+        ),
+        special,
     )
-    share = np.ones(8)
-    room = (np.empty((widest, 18)), np.empty((widest, NORMS)), np.empty(widest, np.int64))
-    desk = (work, np.ones(MOST_PAIRED), scratch, share, room)
-    scene = (definite, world, special)
     statistics = np.zeros(5, np.int64)
-    spots = np.empty(3, np.int64)
-    e = np.empty(3, np.int64)
-    lam = np.empty(18)
-    tie_first = world[3]
-    root_corners = np.empty((3, 4))
-    root_weights = np.empty(3)
+    kept_small = (np.empty(3, np.int64), np.empty(3, np.int64), np.empty(18))
+    spots, e, lam = borrowed(kept_small[0]), borrowed(kept_small[1]), borrowed(kept_small[2])
     for root in order:
         m = candidate_count[root]
         far = 0
@@ -236,20 +239,28 @@ def subdivide(
                 or statistics[0] - before > allowed
             ):
                 kind = HARD
-            tokens = grown(tokens, n_tokens + 1)
+            if n_tokens + 1 > len(tokens):
+                tokens = grown(tokens, n_tokens + 1)
             if kind == FAILED:
                 tokens[n_tokens] = k
                 n_tokens += 1
                 needed = start + 2 * m
-                tables, norms, ids = grown(tables, needed), grown(norms, needed), grown(ids, needed)
+                if needed > len(tables):
+                    kept = (grown(kept[0], needed), grown(kept[1], needed), grown(kept[2], needed))
+                    tables, norms, ids = borrowed(kept[0]), borrowed(kept[1]), borrowed(kept[2])
                 for a in range(m):
                     if not fine:
                         halve(tables, start + a, k, start + m + a)
                     norms[start + m + a] = norms[start + a]
                     ids[start + m + a] = ids[start + a]
-                frames = grown(frames, top + 2)
-                corners = grown(corners, top + 2)
-                exponents = grown(exponents, top + 2)
+                if top + 2 > len(frames):
+                    kept_frames = (
+                        grown(kept_frames[0], top + 2),
+                        grown(kept_frames[1], top + 2),
+                        grown(kept_frames[2], top + 2),
+                    )
+                    frames, corners = borrowed(kept_frames[0]), borrowed(kept_frames[1])
+                    exponents = borrowed(kept_frames[2])
                 # The second half (P, M, R) below, the first (P, Q, M) on top of the stack.
                 for half in range(2):
                     second = half == 0
@@ -262,24 +273,25 @@ def subdivide(
                 continue
             tokens[n_tokens] = LEAF
             n_tokens += 1
-            kinds = grown(kinds, n_leaves + 1)
-            choices = grown(choices, n_leaves + 1)
-            first_slot = grown(first_slot, n_leaves + 2)
+            if n_leaves + 1 > len(kinds):
+                kinds, choices = grown(kinds, n_leaves + 1), grown(choices, n_leaves + 1)
+                first_slot = grown(first_slot, len(kinds) + 1)
             kinds[n_leaves] = kind
             choices[n_leaves] = choice
             first_slot[n_leaves] = n_slots
             n_leaves += 1
             statistics[4] += fine
             count = 0 if kind == HARD else max(ports, 1)
-            slots = grown(slots, n_slots + count)
+            if n_slots + count > len(slots):
+                slots = grown(slots, n_slots + count)
             for c in range(count):
                 slots[n_slots + c, 0] = scratch[4][c, 0]
                 slots[n_slots + c, 1] = ids[start + scratch[4][c, 1]]
             n_slots += count
             if kind != EMPTY:
-                shapes = grown(shapes, n_shapes + 1)
-                points = grown(points, n_shapes + 1)
-                shape_roots = grown(shape_roots, n_shapes + 1)
+                if n_shapes + 1 > len(shapes):
+                    shapes, points = grown(shapes, n_shapes + 1), grown(points, n_shapes + 1)
+                    shape_roots = grown(shape_roots, n_shapes + 1)
                 shapes[n_shapes] = lam
                 points[n_shapes] = scratch[6]
                 shape_roots[n_shapes] = root
@@ -294,6 +306,7 @@ def subdivide(
                     statistics[2 if kind == HARD else 3] += 1
     first_slot[n_leaves] = n_slots
     open_first[n_open] = n_open_ids
+    release(kept, kept_frames, kept_root, kept_desk, kept_small)
     return (
         tokens[:n_tokens].copy(),
         kinds[:n_leaves].copy(),
