@@ -11,10 +11,11 @@ import numpy as np
 
 from harness.diagram.counts import Counts, Domain, Objective
 from harness.diagram.fast import chains, domains
-from harness.diagram.fast.arrays import Arrays, CornerNode, glued, joined
+from harness.diagram.fast.arrays import Arrays, glued, joined
 from harness.diagram.fast.build import Leaves, candidates_of, find_leaves, open_rows, solve_open
 from harness.diagram.fast.decisions import decide_open
 from harness.diagram.fast.hard import LocalMap
+from harness.diagram.fast.leaves import EMPTY
 from harness.diagram.fast.nodes import (
     AT_INFINITY,
     BOUNDARY,
@@ -44,6 +45,8 @@ class FastDiagram:
 
     ``edges`` (e, 6), ``edge_of_arc`` (a, 2): see :func:`harness.diagram.fast.chains.join_arcs`.
     ``cell_of_slot`` (s,), ``cells``: their number.  ``unbounded``: cells that reach infinity.
+    ``solved``: the local maps of leaves that went to the algebra.  ``ties``: see
+    :mod:`harness.diagram.fast.ties`.
     """
 
     prepared: Prepared
@@ -60,11 +63,18 @@ class FastDiagram:
     unbounded: set[int]
     work: Work
     solved: dict[int, LocalMap]
+    ties: Ties
 
     @cached_property
     def coarse(self) -> float:
         """A tolerance that is good enough to see which walk is the outer one."""
         return float(np.ptp(self.instance.segments.reshape(-1, 2), axis=0).max()) * 1e-3
+
+    @cached_property
+    def rows_of_leaves(self) -> Ints:
+        """The row in ``leaves.shapes`` of every leaf that is not empty, (leaves,)."""
+        rows: Ints = np.cumsum(self.leaves.kinds != EMPTY) - 1
+        return rows
 
     @cached_property
     def domain_corners(self) -> set[int]:
@@ -74,18 +84,6 @@ class FastDiagram:
         walls = self.roots.walls
         before = {end: wall for (_, end), wall in walls.items()}
         return {start for (start, _), wall in walls.items() if before[start] != wall}
-
-    def is_endpoint(self, corner: int) -> bool:
-        """Whether a segment ends at a corner of roots."""
-        return any(z & 1 for z in self.roots.corners.incident[corner])
-
-    def segments_at_corner(self, node: CornerNode, around: list[int]) -> list[int]:
-        """The segments that meet at a special corner: those of the cells around it and, unless it
-        is an endpoint, others that tie with them there."""
-        if self.is_endpoint(node.corner):
-            return around
-        lines = {z >> 1 for z in self.roots.corners.incident[node.corner]}
-        return sorted(set(around) | lines) if lines & set(around) else around
 
     @property
     def instance(self) -> Instance:
@@ -221,4 +219,5 @@ def _attempt(
             workers=workers,
         ),
         solved=solved,
+        ties=ties,
     )
