@@ -25,7 +25,7 @@ from harness.diagram.fast.nodes import (
     unbounded_classes,
 )
 from harness.diagram.fast.plane import plane_roots
-from harness.diagram.fast.prepare import Ints, Prepared, prepare
+from harness.diagram.fast.prepare import Floats, Ints, Prepared, prepare
 from harness.diagram.fast.roots import Roots
 from harness.diagram.fast.ties import Ties, tie_arrays, ties_at_corners
 from harness.diagram.work import Contradiction, Hopeless, Work
@@ -45,8 +45,8 @@ class FastDiagram:
 
     ``edges`` (e, 6), ``edge_of_arc`` (a, 2): see :func:`harness.diagram.fast.chains.join_arcs`.
     ``cell_of_slot`` (s,), ``cells``: their number.  ``unbounded``: cells that reach infinity.
-    ``solved``: the local maps of leaves that went to the algebra.  ``ties``: see
-    :mod:`harness.diagram.fast.ties`.
+    ``solved``, ``candidates``: the local maps of leaves that went to the algebra, and the segments
+    in them by their numbers there.  ``ties``: see :mod:`harness.diagram.fast.ties`.
     """
 
     prepared: Prepared
@@ -64,6 +64,7 @@ class FastDiagram:
     work: Work
     solved: dict[int, LocalMap]
     ties: Ties
+    candidates: dict[int, list[int]]
 
     @cached_property
     def coarse(self) -> float:
@@ -75,6 +76,12 @@ class FastDiagram:
         """The row in ``leaves.shapes`` of every leaf that is not empty, (leaves,)."""
         rows: Ints = np.cumsum(self.leaves.kinds != EMPTY) - 1
         return rows
+
+    @cached_property
+    def corner_points(self) -> Floats:
+        """The corners of roots as doubles, (c, 2)."""
+        exact = self.roots.corners.exact
+        return np.array([[float(x), float(y)] for x, y in exact]).reshape(-1, 2)
 
     @cached_property
     def domain_corners(self) -> set[int]:
@@ -220,4 +227,12 @@ def _attempt(
         ),
         solved=solved,
         ties=ties,
+        candidates=_candidates(leaves, rows_open, solved),
     )
+
+
+def _candidates(leaves: Leaves, rows: Ints, solved: dict[int, LocalMap]) -> dict[int, list[int]]:
+    """The candidates of the leaves that were solved by algebra; ``rows``: of all open leaves."""
+    shaped = np.flatnonzero(leaves.kinds != EMPTY)[rows].tolist()
+    first, ids = leaves.open_first.tolist(), leaves.open_ids.tolist()
+    return {leaf: ids[first[k] : first[k + 1]] for k, leaf in enumerate(shaped) if leaf in solved}

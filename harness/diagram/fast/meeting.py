@@ -15,9 +15,7 @@ from itertools import pairwise
 import numpy as np
 
 from harness.diagram.fast.arrays import CornerNode
-from harness.diagram.fast.build import open_rows
 from harness.diagram.fast.counting import FastDiagram
-from harness.diagram.fast.leaves import EMPTY
 from harness.diagram.fast.node_points import local_node
 from harness.diagram.fast.nodes import owners_around
 from harness.diagram.planar_map import RationalPoint
@@ -97,21 +95,10 @@ class Meeting:
         node = local_node(diagram, port)
         leaf = int(arrays.leaf_of_arc[half >> 1])
         if node is not None and node.kind == "boundary":
-            around |= {self._candidates[leaf][k] for k in node.segments}
+            around |= {diagram.candidates[leaf][k] for k in node.segments}
         if diagram.domain != "plane" and diagram.objective == "smallest":
             around |= self._on_wall(port, leaf, around)
         return tuple(sorted(around))
-
-    @cached_property
-    def _candidates(self) -> dict[int, list[int]]:
-        """The candidates of the leaves that were solved by algebra."""
-        leaves = self.diagram.leaves
-        shaped = np.flatnonzero(leaves.kinds != EMPTY)
-        first, ids = leaves.open_first.tolist(), leaves.open_ids.tolist()
-        return {
-            int(shaped[row]): ids[first[k] : first[k + 1]]
-            for k, row in enumerate(open_rows(leaves).tolist())
-        }
 
     def _on_wall(self, port: int, leaf: int, around: set[int]) -> set[int]:
         """The segments on a wall's line that see nothing of it, if one of them wins at a port.

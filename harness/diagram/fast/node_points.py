@@ -138,8 +138,7 @@ def _is_inside(diagram: FastDiagram, leaf: Ints, p: Floats) -> NDArray[np.bool_]
     """Whether points (k, 2) are inside leaves (k,), as far as doubles tell."""
     leaves, roots = diagram.leaves, diagram.roots
     rows = diagram.rows_of_leaves[leaf]
-    exact = np.array([[float(x), float(y)] for x, y in roots.corners.exact]).reshape(-1, 2)
-    corners = np.column_stack([exact, roots.corners.weights])[
+    corners = np.column_stack([diagram.corner_points, roots.corners.weights])[
         roots.triangles[leaves.shape_roots[rows]]
     ]
     shapes = leaves.shapes[rows].reshape(-1, 3, 3)

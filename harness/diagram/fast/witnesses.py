@@ -10,6 +10,7 @@ from harness.diagram.fast.chart import Chart
 from harness.diagram.fast.counting import FastDiagram
 from harness.diagram.fast.forms import U
 from harness.diagram.fast.jit import compiled
+from harness.diagram.fast.leaf_points import points_in_leaves
 from harness.diagram.fast.leaves import EMPTY
 from harness.diagram.fast.pieces import Whole, between, is_clear, points_of_piece
 from harness.diagram.fast.points import exact_point
@@ -79,7 +80,10 @@ def witnesses(diagram: FastDiagram) -> tuple[tuple[RationalPoint, int], ...]:
             found[cell] = Fraction(x), Fraction(y)
         else:
             found[cell] = _middle(diagram, shapes[k], int(roots[k]))
-    missing = np.flatnonzero(chosen < 0)
+    found_too = points_in_leaves(diagram, np.flatnonzero(chosen < 0))
+    for cell, x, y in zip(*found_too, strict=True):
+        found[cell] = Fraction(x), Fraction(y)
+    missing = np.array([cell for cell, point in enumerate(found) if point is None], dtype=np.int64)
     for cell, slots in zip(missing.tolist(), _slots_of(diagram, missing), strict=True):
         found[cell] = _beside_some_piece(diagram, cell, slots)
     return tuple((point, cell) for cell, point in enumerate(found) if point is not None)
@@ -91,8 +95,7 @@ def _middles(diagram: FastDiagram, shapes: Floats, roots: Ints) -> tuple[Floats,
     With coordinates up to R, a corner is computed within E = 8uR (1-norm of both coordinates).  An
     orientation d × e is then off by 4E(|d| + |e|) and a few roundings of products, at most.
     """
-    corners = diagram.roots.corners
-    exact = np.array([[float(x), float(y)] for x, y in corners.exact]).reshape(-1, 2)
+    corners, exact = diagram.roots.corners, diagram.corner_points
     of_root = diagram.roots.triangles[roots]
     finite = np.array(corners.weights)[of_root].all(axis=1)
     points = np.einsum("tkc,tcd->tkd", shapes, exact[of_root])
