@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from typing import Any, TypeVar, overload
 
 import numpy as np
@@ -115,7 +116,9 @@ class _Parts:
         for v, segments in enumerate(meeting.inside()):
             special = arrays.special.get(v)
             if special is not None:
-                result.append(special)
+                result.append(
+                    replace(special, segments=tuple(sorted({*special.segments, *segments})))
+                )
                 continue
             point = node_point(diagram, v)
             result.append(Node(kinds[v], point, segments, degrees[v], False, _Later(diagram, v)))

@@ -3,21 +3,21 @@
 At a point that is no segment's endpoint: all that win there, whether they own a cell beside it or
 not.  A segment that is certainly beaten inside a triangle can only tie with the winner on the
 triangle's boundary, where that is known by construction: at a special corner (it is on the
-segment's line, or among the known ties) or along a wall (the segment is on the wall's line).  So
-inside leaves the owners of the cells around a node are all.
+segment's line, or among the known ties) or along a wall (the segment is on the wall's line), or
+where both have the angle 0, being on one line.  So inside leaves the owners of the cells around a
+node are all, but at crossings, where others on their lines win, too.
 """
 
 from __future__ import annotations
 
+from collections import defaultdict
 from functools import cached_property
 from itertools import pairwise
 
-import numpy as np
-
 from harness.diagram.fast.arrays import CornerNode
 from harness.diagram.fast.counting import FastDiagram
-from harness.diagram.fast.node_points import local_node
-from harness.diagram.fast.nodes import owners_around
+from harness.diagram.fast.node_points import common_point, local_node
+from harness.diagram.fast.nodes import CROSS, owners_around
 from harness.diagram.planar_map import RationalPoint
 from harness.geometry.predicates import compare_visual_angles
 
@@ -36,10 +36,34 @@ class Meeting:
         arrays = self.diagram.arrays
         around = arrays.owner[arrays.arcs[arrays.out >> 1, 2:]].tolist()
         first = arrays.out_first.tolist()
-        return [
-            tuple(sorted({k for pair in around[low:high] for k in pair}))
-            for low, high in pairwise(first)
-        ]
+        crossing = (self.diagram.nodes.kind[: len(first) - 1] == CROSS).tolist()
+        result = []
+        for v, (low, high) in enumerate(pairwise(first)):
+            owners = {k for pair in around[low:high] for k in pair}
+            if crossing[v]:
+                owners |= self._on_lines(owners)
+            result.append(tuple(sorted(owners)))
+        return result
+
+    def _on_lines(self, owners: set[int]) -> set[int]:
+        """The segments on the lines of those that meet at a crossing, unless it is inside them."""
+        lines = self.diagram.prepared.lines
+        numbers = {int(lines[k]) for k in owners} - {-1}
+        if not numbers:
+            return set()
+        members = [k for number in numbers for k in self._members[number]]
+        one = min(owners)
+        other = next(k for k in owners if lines[k] < 0 or lines[k] != lines[one])
+        p = common_point(self.diagram.instance, one, other)
+        return {k for k in members if not _covers(self.diagram.instance.rational_segment(k), p)}
+
+    @cached_property
+    def _members(self) -> dict[int, list[int]]:
+        """The segments on every line that holds several."""
+        found: defaultdict[int, list[int]] = defaultdict(list)
+        for k, line in enumerate(self.diagram.prepared.lines.tolist()):
+            found[line].append(k)
+        return found
 
     def is_endpoint(self, corner: CornerNode) -> bool:
         """Whether a segment ends at a special corner."""
@@ -66,7 +90,7 @@ class Meeting:
         others = {z >> 1 for z in diagram.roots.corners.incident[corner]}
         lines = diagram.prepared.lines
         on_lines = {int(lines[k]) for k in others} - {-1}
-        others |= set(np.flatnonzero(np.isin(lines, list(on_lines))).tolist())
+        others |= {k for number in on_lines for k in self._members[number]}
         others |= {k for c, i, j, _ in diagram.ties if c == corner for k in (i, j)}
         best = self._winners(diagram.roots.corners.exact[corner], sorted(others | set(around)))
         return tuple(sorted(set(around) | best))
@@ -120,7 +144,7 @@ class Meeting:
             *({z >> 1 for z in diagram.roots.corners.incident[c]} for c in corners)
         )
         here = {int(lines[k]) for k in common} & on_line
-        members = np.flatnonzero(np.isin(lines, list(here))).tolist()
+        members = [k for number in here for k in self._members[number]]
         (ax, ay), (bx, by) = (diagram.roots.corners.exact[c] for c in corners)
         middle = ((ax + bx) / 2, (ay + by) / 2)
         apart = [k for k in members if not _covers(diagram.instance.rational_segment(k), middle)]

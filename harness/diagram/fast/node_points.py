@@ -16,6 +16,7 @@ from harness.diagram.fast.nodes import vertex_points
 from harness.diagram.fast.prepare import Floats, Ints
 from harness.diagram.planar_map import Node, Place, RationalPoint
 from harness.geometry.exact import fraction, point
+from harness.geometry.instance import Instance
 
 Extended = NDArray[np.longdouble]
 #: Polished points of ties, one row for every vertex; NaN where that failed.
@@ -158,9 +159,14 @@ def _is_inside(diagram: FastDiagram, leaf: Ints, p: Floats) -> NDArray[np.bool_]
 def crossing(diagram: FastDiagram, leaf: int) -> RationalPoint:
     """The common point of the two lines in a crossing leaf, exactly."""
     base = int(diagram.arrays.start[leaf])
+    return common_point(diagram.instance, *diagram.arrays.owner[base : base + 2].tolist())
+
+
+def common_point(instance: Instance, one: int, other: int) -> RationalPoint:
+    """The common point of the lines of two segments, exactly."""
     lines = []
-    for segment in diagram.arrays.owner[base : base + 2].tolist():
-        a, b = (point(end) for end in diagram.instance.rational_segment(segment))
+    for segment in (one, other):
+        a, b = (point(end) for end in instance.rational_segment(segment))
         lines.append((a[1] - b[1], b[0] - a[0], a[0] * b[1] - a[1] * b[0]))
     (a, b, c), (d, e, f) = lines
     w = a * e - b * d
