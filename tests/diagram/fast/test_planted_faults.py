@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
+import random
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
+from fractions import Fraction
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -15,10 +20,14 @@ from harness.diagram.fast import counting
 from harness.diagram.fast.build import find_leaves
 from harness.diagram.fast.leaves import ARC, EMPTY, TRIPLE
 from harness.diagram.fast.map import build_fast
+from harness.diagram.fast.prepare import prepare
 from harness.diagram.planar_map import PlanarMap
 from harness.diagram.work import Contradiction
 from harness.geometry.instance import Instance
-from tests.diagram.support import polygon, segments
+from tests.diagram.fast import test_classify
+from tests.diagram.fast.agreement import Case, disagreements
+from tests.diagram.fast.triangles import cuts, diagrams
+from tests.diagram.support import SQUARE, polygon, segments
 from tests.diagram.test_planted_faults import FAULTS, merge_two_cells
 
 HEPTAGON = polygon((6, 1), (5, 4), (1, 5), (-4, 6), (-6, 0), (-3, -5), (3, -4))
@@ -124,3 +133,40 @@ def test_faults_in_leaves_are_caught(
     altered(monkeypatch, fault)
     with pytest.raises((Contradiction, ArithmeticError)):
         fast(name).sanity_check()
+
+
+# --- coefficients off by more than their bounds --------------------------------------------------
+
+
+def test_coefficients_beyond_their_bounds_are_caught(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The comparison of leaves finds wrong ones as soon as errors exceed what they may be."""
+    monkeypatch.setattr(test_classify, "SHARE", Fraction(12))
+    rng = random.Random(1)
+    found: Counter[str] = Counter()
+    every = diagrams(rng, ["star", "segments"], 5)
+    wrong = (
+        text
+        for made in islice(every, 10)
+        for cut in cuts(made, rng, 30)
+        for text in test_classify.examined(cut, rng, found)
+    )
+    assert next(wrong, None) is not None
+
+
+@pytest.mark.parametrize("shift", [1e-9, 1e-12])
+def test_a_shifted_coordinate_is_noticed(shift: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The builder's doubles lie about one coordinate, by more than its bounds allow for.
+
+    In the square all four segments tie in one point; not so if one is moved.
+    """
+    square = Case(polygon(*SQUARE), "kernel", "smallest")
+    assert disagreements(square) == []
+
+    def shifted(instance: Instance, parallels: bool) -> Any:
+        prepared = prepare(instance, parallels)
+        prepared.segments[0, 0] += shift
+        return prepared
+
+    monkeypatch.setattr(counting, "prepare", shifted)
+    with contextlib.suppress(ArithmeticError, Contradiction):
+        assert disagreements(square) != []
