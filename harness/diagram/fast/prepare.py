@@ -51,10 +51,13 @@ def prepare(instance: Instance, parallels: bool) -> Prepared:
     segments = np.zeros((n, 8))
     if instance.exact is None:
         segments[:, 0::2] = np.ldexp(instance.segments.reshape(n, 4), -exponent)
+        vectors = segments[:, [4, 6]] - segments[:, [0, 2]]
     else:
+        # Far from the origin the difference of rounded endpoints would be off by much.
+        vectors = np.empty((n, 2))
         for k, (a, b) in enumerate(instance.rational_segments()):
             segments[k] = [part for c in (*a, *b) for part in double_double(c * scale)]
-    vectors = segments[:, [4, 6]] - segments[:, [0, 2]]
+            vectors[k] = [float((d - c) * scale) for c, d in zip(a, b, strict=True)]
     none = np.full(n, -1, dtype=np.int64)
     return Prepared(
         instance=instance,
