@@ -138,9 +138,15 @@ class FastDiagram:
 
 
 def fast_diagram(
-    instance: Instance, domain: Domain, objective: Objective, workers: int | None = None
+    instance: Instance,
+    domain: Domain,
+    objective: Objective,
+    workers: int | None = None,
+    seed: int = 0,
 ) -> FastDiagram:
     """The diagram of a validated instance; ``workers`` threads (by default, one per processor).
+
+    ``seed``: the first choice of free points.  The diagram does not depend on it.
 
     Raises Contradiction if no choice of free points worked.
     """
@@ -148,9 +154,9 @@ def fast_diagram(
     prepared = prepare(instance, parallels=domain == "plane")
     workers = workers or len(os.sched_getaffinity(0))
     problem: Contradiction | None = None
-    for seed in range(SEEDS):
+    for turn in range(SEEDS):
         try:
-            return _attempt(prepared, domain, objective, found, seed, workers)
+            return _attempt(prepared, domain, objective, found, seed + turn, workers)
         except Hopeless:
             raise
         except Contradiction as error:

@@ -13,8 +13,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from generators.registry import generate
 from harness.diagram import build
-from harness.diagram.counts import DOMAINS, OBJECTIVES, Objective
+from harness.diagram.counts import DOMAINS, OBJECTIVES, Domain, Objective
+from harness.diagram.fast.counting import fast_diagram
+from harness.geometry.instance import Instance
 from tests import strategies
 from tests.diagram.fast import agreement
 from tests.diagram.fast.agreement import Case, cases, disagreements, domains, shrunk
@@ -47,6 +50,33 @@ def test_builders_agree_on_degenerate_input(plain: Any, objective: Objective, do
     made = instance_of(plain)
     case = Case(made, domain if made.kind == "polygon" else "plane", objective)
     assert disagreements(case) == []
+
+
+FAMILIES: list[tuple[str, int, Domain, Objective]] = [
+    ("zigzag", 20, "kernel", "smallest"),
+    ("convex-weave", 16, "kernel", "smallest"),
+    ("convex-circle", 20, "interior", "largest"),
+    ("star", 14, "interior", "smallest"),
+    ("cavity", 12, "plane", "smallest"),
+    ("segments", 14, "plane", "smallest"),
+    ("segments", 14, "plane", "largest"),
+]
+
+
+@pytest.mark.parametrize(("family", "n", "domain", "objective"), FAMILIES)
+def test_other_triangles_and_workers_give_the_same_counts(
+    family: str, n: int, domain: Domain, objective: Objective
+) -> None:
+    """Every seed makes other triangles, so that a wrong leaf would hardly be wrong twice."""
+    made = Instance.from_generated(generate(family, n, 7))
+    counts = [
+        fast_diagram(made, domain, objective, workers, seed).counts()
+        for workers, seed in [(1, 0), (2, 0), (1, 1), (2, 5)]
+    ]
+    assert counts == [counts[0]] * len(counts)
+    map_of = build(made, domain, objective, "fast")
+    map_of.sanity_check()
+    assert map_of.counts == counts[0]
 
 
 # --- the comparison itself -----------------------------------------------------------------------
