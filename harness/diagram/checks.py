@@ -12,13 +12,15 @@ from collections.abc import Callable, Iterator
 from fractions import Fraction
 
 import numpy as np
+from numpy.typing import NDArray
 
 from harness.diagram.planar_map import VERTEX_KINDS, Cell, Node, PlanarMap, RationalPoint, Side
-from harness.geometry.predicates import (
-    UNDEFINED,
-    compare_visual_angles,
-    compare_visual_angles_at,
-)
+from harness.geometry.coordinates import Floats
+from harness.geometry.predicates import compare_visual_angles
+
+_UNIT = 2.0**-53
+#: So many contests are decided at once.
+_AT_ONCE = 1 << 17
 
 
 class InsaneMap(ArithmeticError):
@@ -38,6 +40,15 @@ def check(diagram: PlanarMap) -> None:
 def _require(condition: bool, message: str) -> None:
     if not condition:
         raise InsaneMap(message)
+
+
+def counts_are_those_of_the_objects(diagram: PlanarMap) -> None:
+    """Counts that a builder made in another way are those of the finished map."""
+    if diagram.tally is None:
+        return
+    again = diagram.recounted().as_dict()
+    for name, value in diagram.tally.as_dict().items():
+        _require(value == again[name], f"the tally says {name}: {value}, the objects {again[name]}")
 
 
 def degrees_are_edge_ends(diagram: PlanarMap) -> None:
@@ -181,51 +192,78 @@ def boundary_splits_into_components(diagram: PlanarMap) -> None:
 def witnesses_are_won(diagram: PlanarMap) -> None:
     """At every witness point the segment of its cell is the winner; every cell has a witness."""
     inside = [(point, c) for point, c in diagram.witnesses if c >= 0]
-    owners = [diagram.cells[c].segment for _, c in inside]
-    orders = _orders(diagram, [point for point, _ in inside], owners)
+    exact = diagram.instance.rational_segments()
     sense = 1 if diagram.objective == "smallest" else -1
-    for (_, c), owner, row in zip(inside, owners, orders, strict=True):
-        for k, order in enumerate(row):
-            _require(
-                order != UNDEFINED and order * sense <= 0,
-                f"segment {k} beats segment {owner} at a witness of the latter's cell {c}",
-            )
+    owners = [cell.segment for cell in diagram.cells]
+    for row, k in _open_contests(diagram, [p for p, _ in inside], [owners[c] for _, c in inside]):
+        point, c = inside[row]
+        order = compare_visual_angles(point, exact[owners[c]], exact[k])
+        _require(
+            order is not None and order * sense <= 0,
+            f"segment {k} beats segment {owners[c]} at a witness of the latter's cell {c}",
+        )
     unseen = set(range(len(diagram.cells))) - {c for _, c in inside}
     _require(not unseen, f"cells {sorted(unseen)} have no witness")
 
 
-def _orders(
+def _open_contests(
     diagram: PlanarMap, points: list[RationalPoint], owners: list[int]
-) -> Iterator[list[int]]:
-    """For each point the exact signs of θ(owner) − θ(k), k = 0, …, n − 1.
+) -> Iterator[tuple[int, int]]:
+    """(r, k) for all points r and segments k of which doubles do not tell that owner r beats k.
 
-    All points that are doubles are compared at once, the others in rational arithmetic.
+    The bound: with coordinates exact or rounded once, a difference of two is off by u|d| + e, where
+    e = 4u times the greatest of both (0 if all are doubles).  So Q and L, sums of two products, are
+    off by 5u Σ|products| + e Σ|factors| + 2e²; the rest is that of
+    :func:`harness.geometry.predicates.filter_visual_angles`.  Without underflow, that is; where
+    numbers may be so small, everything is left open.
     """
-    doubles = [_as_doubles(point) for point in points]
-    plain = [k for k, point in enumerate(doubles) if point is not None]
-    table: dict[int, list[int]] = {}
-    if diagram.instance.exact is None and plain:
-        segments = diagram.instance.segments
-        at = np.array([doubles[k] for k in plain])
-        own = segments[[owners[k] for k in plain]]
-        signs = compare_visual_angles_at(at[:, None], own[:, None], segments[None])
-        table = dict(zip(plain, signs.tolist(), strict=True))
-    exact = diagram.instance.rational_segments()
-    for k, (point, owner) in enumerate(zip(points, owners, strict=True)):
-        if k in table:
-            yield table[k]
-        else:
-            signs_here = (compare_visual_angles(point, exact[owner], other) for other in exact)
-            yield [UNDEFINED if sign is None else sign for sign in signs_here]
+    segments = diagram.instance.segments
+    at = np.array([[float(x), float(y)] for x, y in points]).reshape(-1, 2)
+    rounded = np.array(
+        [(Fraction(x), Fraction(y)) != p for (x, y), p in zip(at, points, strict=True)]
+    )
+    if diagram.instance.exact is not None:
+        rounded[:] = True
+    largest = float(np.abs(segments).max())
+    sense = 1 if diagram.objective == "smallest" else -1
+    rows = max(1, _AT_ONCE // len(segments))
+    for low in range(0, len(points), rows):
+        p = at[low : low + rows, None]
+        size = np.maximum(np.abs(p).max(axis=2), largest)
+        error = np.where(rounded[low : low + rows, None], 4 * _UNIT * size, 0.0)
+        mine = np.array(owners[low : low + rows])
+        won = np.zeros((len(p), len(segments)), dtype=bool)
+        if largest > 1e-60 and size.max() < 1e60:
+            theirs = _forms(p, segments[None], error)
+            own = _forms(p, segments[mine][:, None], error)
+            won = _certainly_less(own, theirs, sense)
+        won[np.arange(len(p)), mine] = True
+        yield from ((low + int(r), int(k)) for r, k in np.argwhere(~won))
 
 
-def _as_doubles(point: RationalPoint) -> tuple[float, float] | None:
-    """The point if both coordinates are doubles."""
-    try:
-        x, y = float(point[0]), float(point[1])
-    except OverflowError:
-        return None
-    return (x, y) if (Fraction(x), Fraction(y)) == point else None
+Forms = tuple[Floats, Floats, Floats, Floats]
+
+
+def _forms(p: Floats, segments: Floats, e: Floats) -> Forms:
+    """Q and |L| of segments (…, 2, 2) at points (…, 2), and bounds of their errors."""
+    ax, ay = segments[..., 0, 0] - p[..., 0], segments[..., 0, 1] - p[..., 1]
+    bx, by = segments[..., 1, 0] - p[..., 0], segments[..., 1, 1] - p[..., 1]
+    reach = e * (np.abs(ax) + np.abs(ay) + np.abs(bx) + np.abs(by) + 2 * e)
+    one, two, three, four = ax * bx, ay * by, ax * by, ay * bx
+    q_error = 5 * _UNIT * (np.abs(one) + np.abs(two)) + reach
+    line_error = 5 * _UNIT * (np.abs(three) + np.abs(four)) + reach
+    return one + two, q_error, np.abs(three - four), line_error
+
+
+def _certainly_less(own: Forms, theirs: Forms, sense: int) -> NDArray[np.bool_]:
+    """Whether the first visual angle is certainly less (``sense`` 1) or greater (−1)."""
+    (q, q_error, line, line_error), (r, r_error, other, other_error) = own, theirs
+    first, second = q * other, r * line
+    bound = np.abs(q) * other_error + other * q_error + q_error * other_error
+    bound += np.abs(r) * line_error + line * r_error + r_error * line_error
+    bound += 3 * _UNIT * (np.abs(first) + np.abs(second))
+    certain: NDArray[np.bool_] = sense * (first - second) > 1.01 * bound + 1e-290
+    return certain
 
 
 def vertices_are_ties(diagram: PlanarMap) -> None:
@@ -251,6 +289,7 @@ CHECKS: tuple[Callable[[PlanarMap], None], ...] = (
     cells_have_outer_boundaries,
     euler_holds,
     boundary_splits_into_components,
+    counts_are_those_of_the_objects,
     vertices_are_ties,
     witnesses_are_won,
 )

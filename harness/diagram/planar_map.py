@@ -57,8 +57,9 @@ class Node:
     """Where edges meet or end.
 
     ``point``: (x, y) as doubles; for kind ``infinity`` the unit vector of the direction in which
-    the edge leaves.  ``segments``: those whose cells meet here or that tie here, increasing.
-    ``degree``: edge ends at this node.  ``endpoint``: whether a segment ends here.
+    the edge leaves.  ``segments``: those whose cells meet here and, unless a segment ends here, all
+    others that win here, too; increasing.  ``degree``: edge ends at this node.  ``endpoint``:
+    whether a segment ends here.
     """
 
     kind: NodeKind

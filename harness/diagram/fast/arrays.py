@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import cmp_to_key
 
 import numpy as np
 
@@ -11,7 +13,7 @@ from harness.diagram.fast import chains, glue
 from harness.diagram.fast.build import Leaves
 from harness.diagram.fast.hard import LocalMap
 from harness.diagram.fast.leaves import EMPTY, HARD
-from harness.diagram.fast.prepare import Floats, Ints
+from harness.diagram.fast.prepare import Ints
 from harness.diagram.fast.roots import Roots
 from harness.diagram.planar_map import Node
 from harness.diagram.work import Contradiction
@@ -160,39 +162,61 @@ def corner_nodes(roots: Roots, leaves: Leaves, arrays: Arrays) -> list[CornerNod
     loose = np.flatnonzero((arrays.inward >= 0) & (arrays.mate < 0) & (arrays.place % 2 == 0))
     leaf_of_arc = arrays.leaf_of_arc[arrays.inward[loose] >> 1]
     shape_of_leaf = np.cumsum(leaves.kinds != EMPTY) - 1
-    at: defaultdict[int, list[tuple[float, int, int]]] = defaultdict(list)
+    at: defaultdict[int, list[tuple[int, int]]] = defaultdict(list)
     for port, leaf in zip(loose.tolist(), leaf_of_arc.tolist(), strict=True):
         row = int(shape_of_leaf[leaf])
-        root = int(leaves.shape_roots[row])
-        shape = leaves.shapes[row].reshape(3, 3)
-        mine = shape[arrays.place[port] // 2]
+        mine = leaves.shapes[row].reshape(3, 3)[arrays.place[port] // 2]
         if np.count_nonzero(mine) != 1:
             raise Contradiction("an edge ends at a corner that is not special")
-        corner = int(roots.triangles[root, int(mine.argmax())])
+        corner = int(roots.triangles[leaves.shape_roots[row], int(mine.argmax())])
         if not roots.corners.special[corner]:
             raise Contradiction("an edge passes through a free point")
-        at[corner].append((_heading(roots, root, corner, shape), leaf, port))
-    # Ports of one leaf at its corner come in the order of a walk inside, that is clockwise.
+        at[corner].append((row, port))
     return [
-        CornerNode(corner, [port for _, _, port in sorted(rows, key=lambda r: (r[0], r[1], -r[2]))])
+        CornerNode(corner, _turning(roots, leaves, corner, rows))
         for corner, rows in sorted(at.items())
     ]
 
 
-def _heading(roots: Roots, root: int, corner: int, shape: Floats) -> float:
-    """The direction from a corner to the middle of a triangle at it, as an angle."""
-    middle = shape.mean(axis=0)
+def _turning(roots: Roots, leaves: Leaves, corner: int, ports: list[tuple[int, int]]) -> list[int]:
+    """The ports of some leaves (row, port) at a corner, counter-clockwise about it; exactly.
+
+    Those of one leaf come in the order of a walk inside, that is clockwise.
+    """
+    rows = sorted({row for row, _ in ports})
+    if len(rows) > 1:
+        headings = {row: _heading(roots, leaves, corner, row) for row in rows}
+
+        def compare(one: int, other: int) -> int:
+            (half, x, y), (other_half, z, w) = headings[one], headings[other]
+            if half != other_half:
+                return half - other_half
+            return -1 if x * w > y * z else 1
+
+        rows.sort(key=cmp_to_key(compare))
+    return [port for row in rows for here, port in reversed(ports) if here == row]
+
+
+def _heading(roots: Roots, leaves: Leaves, corner: int, row: int) -> tuple[int, Fraction, Fraction]:
+    """The direction from a corner to the middle of a leaf at it: which half of the turn, and a
+    vector.
+
+    About a corner at infinity directions are seen from the plane's side of it: across it, and
+    towards the plane.
+    """
     exact, weights = roots.corners.exact, roots.corners.weights
-    x = y = 0.0
-    for weight, other in zip(middle.tolist(), roots.triangles[root].tolist(), strict=True):
-        dx, dy = (float(c) for c in exact[other])
-        if weights[other]:
-            dx, dy = (
-                float(exact[other][0] - exact[corner][0]),
-                float(exact[other][1] - exact[corner][1]),
-            )
-        x, y = x + weight * dx, y + weight * dy
-    return float(np.arctan2(y, x))
+    middle = [sum(column, Fraction(0)) for column in zip(*leaves.weights(row), strict=True)]
+    x = y = w = Fraction(0)
+    for weight, other in zip(
+        middle, roots.triangles[leaves.shape_roots[row]].tolist(), strict=True
+    ):
+        x, y = x + weight * exact[other][0], y + weight * exact[other][1]
+        w += weight * Fraction(weights[other])
+    px, py = exact[corner]
+    if not weights[corner]:
+        return 0, px * y - py * x, w
+    x, y = x - w * px, y - w * py
+    return (0 if y > 0 or (y == 0 and x > 0) else 1), x, y
 
 
 def joined(arrays: Arrays, node_of_port: Ints) -> tuple[Ints, Ints]:

@@ -9,22 +9,22 @@ to integers first: rationals spend their time on common divisors.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from functools import cached_property
-from typing import Any, NamedTuple
-from weakref import WeakKeyDictionary
+from typing import Any
 
 import numpy as np
-from flint import fmpq_poly, fmpz
+from flint import fmpz
 
+from harness.diagram.fast import side_ports
 from harness.diagram.fast.common_zeros import common_zero, independence
 from harness.diagram.fast.counting import FastDiagram
 from harness.diagram.fast.forms import SIDES, STEPS
-from harness.diagram.fast.leaves import CROSSING, EMPTY
-from harness.diagram.fast.prepare import Floats, Ints
-from harness.diagram.fast.univariate import from_bernstein, zeros_inside
+from harness.diagram.fast.leaves import CROSSING
+from harness.diagram.fast.prepare import Floats
+from harness.diagram.fast.side_ports import PortOnSide
+from harness.diagram.fast.univariate import rounded
 from harness.diagram.planar_map import RationalPoint
-from harness.diagram.roots import real_root_balls
 from harness.geometry.exact import sign
 
 #: Barycentric weights.
@@ -48,22 +48,6 @@ _PRODUCTS = (
 #: Pairs of corners in the order 200, 020, 002, 110, 101, 011.
 _SQUARES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 
-_rows: WeakKeyDictionary[FastDiagram, Ints] = WeakKeyDictionary()
-
-
-def rows_of_leaves(diagram: FastDiagram) -> Ints:
-    """The row in ``leaves.shapes`` of every leaf that is not empty; made once, in O(leaves)."""
-    if diagram not in _rows:
-        _rows[diagram] = np.cumsum(diagram.leaves.kinds != EMPTY) - 1
-    return _rows[diagram]
-
-
-def rounded(values: Iterable[Any]) -> list[float]:
-    """Integers divided by the power of two that brings the greatest near 1, as doubles."""
-    whole = [int(value) for value in values]
-    size = 1 << max(value.bit_length() for value in whole)
-    return [value / size for value in whole]
-
 
 def _integers(points: Sequence[RationalPoint]) -> tuple[list[tuple[Any, Any]], Any]:
     """Points times the least number that makes all coordinates integers, and that number."""
@@ -74,19 +58,6 @@ def _integers(points: Sequence[RationalPoint]) -> tuple[list[tuple[Any, Any]], A
     ], fmpz(unit)
 
 
-class PortOnSide(NamedTuple):
-    """A port inside a side of its leaf: the ``rank``-th of all zeros of a pair's curves there.
-
-    ``position``: the corner from which the side starts.  ``along``: the parameter, as a double.
-    ``sign``: the curve F^± (0 if the segments share a line) that passes through it.
-    """
-
-    position: int
-    rank: int
-    along: float
-    sign: int
-
-
 class Chart:
     """The chart of one leaf that is not empty and was not handed over as hard."""
 
@@ -94,7 +65,7 @@ class Chart:
         """O(1), after the first chart of a diagram."""
         self.diagram = diagram
         self.leaf = leaf
-        self.row = int(rows_of_leaves(diagram)[leaf])
+        self.row = int(diagram.rows_of_leaves[leaf])
         roots, leaves = diagram.roots, diagram.leaves
         triangle = roots.triangles[leaves.shape_roots[self.row]].tolist()
         ends, unit = _integers([roots.corners.exact[c] for c in triangle])
@@ -222,38 +193,7 @@ class Chart:
 
     def port_on_side(self, port: int) -> PortOnSide:
         """Where a port with an odd place is on its side."""
-        arrays = self.diagram.arrays
-        place = int(arrays.place[port])
-        base = int(arrays.start[self.leaf])
-        pair = set(self.pair(port))
-        index = sum(
-            arrays.place[p] == place and set(self.pair(p)) == pair for p in range(base, port)
-        )
-        position = place // 2
-        zeros = sorted(
-            (t, which)
-            for which, exact in self._on_side(port, position)
-            for t in zeros_inside(rounded(exact))
-        )
-        if index >= len(zeros):
-            raise ArithmeticError(f"port {port} is no zero of its pair's curves")
-        return PortOnSide(position, index, *zeros[index])
-
-    def _on_side(self, port: int, position: int) -> Iterator[tuple[int, list[Any]]]:
-        """The curves of a port's pair on a side: sign, and Bernstein coefficients along it."""
-        i, j = sorted(self.pair(port))
-        for which in self.signs(i, j):
-            cubic = self.cubic(i, j, which)
-            yield which, [cubic[c] for c in SIDES[(position + 2) % 3]]
-
-    def port_ball(self, port: int, bits: int) -> Any:
-        """An enclosure of the parameter of a port along its side, with about ``bits`` bits."""
-        place = self.port_on_side(port)
-        product = fmpq_poly([1])
-        for _, b in self._on_side(port, place.position):
-            product *= from_bernstein(b)
-        inside = [root for root in real_root_balls(product.numer(), bits) if root > 0 and root < 1]
-        return inside[place.rank]
+        return side_ports.port_on_side(self, port)
 
     # -- vertices and ends of arcs --------------------------------------------------------------
 

@@ -15,6 +15,7 @@ from harness.diagram.fast.leaves import (
     TRIPLE,
     TWO_ARCS,
     hull_determinant,
+    longest,
     meet,
 )
 from harness.diagram.fast.loops import has_no_loop
@@ -156,9 +157,10 @@ def _quad_choice(w):
     """0 if the owners of slots 0 and 2 share an edge, 1 if those of 1 and 3 do, OPEN if unsure.
 
     Let p be any point near the tie of a, b, c, and σ a bound with |Φ(p') − Φ(p)| ≥ σ|p' − p| for
-    Φ = (F_ab, F_ac) (σ = least determinant / norm of the gradients).  If the ball of radius
-    ρ = |Φ(p)|/σ about p lies in T, the tie is in it, by the degree of Φ; there F_ad differs from
-    F_ad(p) by at most ρ·max|∇F_ad|.
+    Φ = (F_ab, F_ac) (σ = least determinant / norm of the gradients, as between two points the mean
+    gradients of both are the same convex combination of their control vectors).  If the ball of
+    radius ρ = |Φ(p)|/σ about p lies in T, the tie is in it, by the degree of Φ; there F_ad differs
+    from F_ad(p) by at most ρ·max|∇F_ad|.
     """
     values, bounds, controls, slots, out, point = w[0], w[2], w[3], w[4], w[5], w[6]
     for x in range(4):
@@ -180,9 +182,9 @@ def _quad_choice(w):
         steep = slope = 0.0
         k = controls[min(a, d), max(a, d)]
         for r in range(6):
-            steep = max(steep, f[r, 0] ** 2 + f[r, 1] ** 2 + g[r, 0] ** 2 + g[r, 1] ** 2)
-            slope = max(slope, k[r, 0] ** 2 + k[r, 1] ** 2)
-        sigma = 0.99 * least / np.sqrt(2.0 * steep)
+            steep = max(steep, longest(f[r], bounds[a, b]) + longest(g[r], bounds[a, c]))
+            slope = max(slope, longest(k[r], bounds[a, d]))
+        sigma = 0.99 * least / np.sqrt(steep)
         value_and_gradient(values[a, b], px, py, out)
         residue = abs(out[0]) + 2.0 * bounds[a, b]
         value_and_gradient(values[a, c], px, py, out)

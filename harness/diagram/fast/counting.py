@@ -11,10 +11,11 @@ import numpy as np
 
 from harness.diagram.counts import Counts, Domain, Objective
 from harness.diagram.fast import chains
-from harness.diagram.fast.arrays import Arrays, CornerNode, glued, joined
+from harness.diagram.fast.arrays import Arrays, glued, joined
 from harness.diagram.fast.build import Leaves, open_rows, solve_open
 from harness.diagram.fast.decisions import decide_open
 from harness.diagram.fast.hard import LocalMap
+from harness.diagram.fast.leaves import EMPTY
 from harness.diagram.fast.nodes import (
     AT_INFINITY,
     BOUNDARY,
@@ -23,9 +24,10 @@ from harness.diagram.fast.nodes import (
     find_nodes,
     unbounded_classes,
 )
-from harness.diagram.fast.prepare import Ints, Prepared, prepare
+from harness.diagram.fast.prepare import Floats, Ints, Prepared, prepare
 from harness.diagram.fast.roots import Roots
 from harness.diagram.fast.search import search
+from harness.diagram.fast.ties import Ties
 from harness.diagram.work import Contradiction, Hopeless, Work
 from harness.geometry.instance import Instance
 from harness.geometry.kernel import Kernel, kernel
@@ -43,6 +45,8 @@ class FastDiagram:
 
     ``edges`` (e, 6), ``edge_of_arc`` (a, 2): see :func:`harness.diagram.fast.chains.join_arcs`.
     ``cell_of_slot`` (s,), ``cells``: their number.  ``unbounded``: cells that reach infinity.
+    ``solved``, ``candidates``: the local maps of leaves that went to the algebra, and the segments
+    in them by their numbers there.  ``ties``: see :mod:`harness.diagram.fast.ties`.
     """
 
     prepared: Prepared
@@ -59,11 +63,25 @@ class FastDiagram:
     unbounded: set[int]
     work: Work
     solved: dict[int, LocalMap]
+    ties: Ties
+    candidates: dict[int, list[int]]
 
     @cached_property
     def coarse(self) -> float:
         """A tolerance that is good enough to see which walk is the outer one."""
         return float(np.ptp(self.instance.segments.reshape(-1, 2), axis=0).max()) * 1e-3
+
+    @cached_property
+    def rows_of_leaves(self) -> Ints:
+        """The row in ``leaves.shapes`` of every leaf that is not empty, (leaves,)."""
+        rows: Ints = np.cumsum(self.leaves.kinds != EMPTY) - 1
+        return rows
+
+    @cached_property
+    def corner_points(self) -> Floats:
+        """The corners of roots as doubles, (c, 2)."""
+        exact = self.roots.corners.exact
+        return np.array([[float(x), float(y)] for x, y in exact]).reshape(-1, 2)
 
     @cached_property
     def domain_corners(self) -> set[int]:
@@ -73,18 +91,6 @@ class FastDiagram:
         walls = self.roots.walls
         before = {end: wall for (_, end), wall in walls.items()}
         return {start for (start, _), wall in walls.items() if before[start] != wall}
-
-    def is_endpoint(self, corner: int) -> bool:
-        """Whether a segment ends at a corner of roots."""
-        return any(z & 1 for z in self.roots.corners.incident[corner])
-
-    def segments_at_corner(self, node: CornerNode, around: list[int]) -> list[int]:
-        """The segments that meet at a special corner: those of the cells around it and, unless it
-        is an endpoint, others that tie with them there."""
-        if self.is_endpoint(node.corner):
-            return around
-        lines = {z >> 1 for z in self.roots.corners.incident[node.corner]}
-        return sorted(set(around) | lines) if lines & set(around) else around
 
     @property
     def instance(self) -> Instance:
@@ -132,9 +138,15 @@ class FastDiagram:
 
 
 def fast_diagram(
-    instance: Instance, domain: Domain, objective: Objective, workers: int | None = None
+    instance: Instance,
+    domain: Domain,
+    objective: Objective,
+    workers: int | None = None,
+    seed: int = 0,
 ) -> FastDiagram:
     """The diagram of a validated instance; ``workers`` threads (by default, one per processor).
+
+    ``seed``: the first choice of free points.  The diagram does not depend on it.
 
     Raises Contradiction if no choice of free points worked.
     """
@@ -142,9 +154,9 @@ def fast_diagram(
     prepared = prepare(instance, parallels=domain == "plane")
     workers = workers or len(os.sched_getaffinity(0))
     problem: Contradiction | None = None
-    for seed in range(SEEDS):
+    for turn in range(SEEDS):
         try:
-            return _attempt(prepared, domain, objective, found, seed, workers)
+            return _attempt(prepared, domain, objective, found, seed + turn, workers)
         except Hopeless:
             raise
         except Contradiction as error:
@@ -161,7 +173,7 @@ def _attempt(
     seed: int,
     workers: int,
 ) -> FastDiagram:
-    roots, leaves = search(prepared, domain, objective, found, seed, workers)
+    roots, leaves, ties = search(prepared, domain, objective, found, seed, workers)
     sense = 1.0 if objective == "smallest" else -1.0
     rows_open = open_rows(leaves)
     by_balls = decide_open(prepared.instance, roots, leaves, sense)
@@ -201,4 +213,13 @@ def _attempt(
             workers=workers,
         ),
         solved=solved,
+        ties=ties,
+        candidates=_candidates(leaves, rows_open, solved),
     )
+
+
+def _candidates(leaves: Leaves, rows: Ints, solved: dict[int, LocalMap]) -> dict[int, list[int]]:
+    """The candidates of the leaves that were solved by algebra; ``rows``: of all open leaves."""
+    shaped = np.flatnonzero(leaves.kinds != EMPTY)[rows].tolist()
+    first, ids = leaves.open_first.tolist(), leaves.open_ids.tolist()
+    return {leaf: ids[first[k] : first[k + 1]] for k, leaf in enumerate(shaped) if leaf in solved}

@@ -7,10 +7,11 @@ import math
 import numpy as np
 from scipy.optimize import brentq
 
-from harness.diagram.fast.chart import CORNERS, Chart, Weights, rounded
+from harness.diagram.fast.chart import CORNERS, Chart, Weights
 from harness.diagram.fast.forms import value_and_gradient
 from harness.diagram.fast.prepare import Floats
 from harness.diagram.fast.sweeps import stretches_between
+from harness.diagram.fast.univariate import rounded
 
 #: Where the slope of cot θ is looked at along a stretch: crowded towards its ends.
 _SAMPLES = (1e-9, *((1 - math.cos(math.pi * k / 12)) / 2 for k in range(1, 12)), 1 - 1e-9)

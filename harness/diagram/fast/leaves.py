@@ -195,22 +195,47 @@ def hull_determinant(f, g, ef, eg):
 
 
 @compiled
+def longest(control, bound):
+    """The squared length that a control vector of a gradient may have, with coefficients off by
+    ``bound``."""
+    x, y = abs(control[0]) + 6.0 * bound, abs(control[1]) + 6.0 * bound
+    return 1.001 * (x * x + y * y)
+
+
+#: Coefficients of the terms in s² and in s of a cubic in the distance s from a corner: those with
+#: which F = s²(α + s β) begins, counter-clockwise, and those that must be zero for that.
+_NEAR = np.array([[5, 9, 7], [8, 9, 3], [4, 9, 6]])
+_FIRST = np.array([[0, 3, 4], [1, 6, 5], [2, 7, 8]])
+
+
+@compiled
+def has_double_zero(signs, corner):
+    """Whether a cubic vanishes at a corner with its gradient, by construction."""
+    for r in range(3):
+        if signs[_FIRST[corner, r]] != 0:
+            return False
+    return True
+
+
+@compiled
+def has_one_branch(signs, corner):
+    """Whether the zero set near a double zero at a corner is certainly at most one arc in T."""
+    near = _NEAR[corner]
+    return _changes_once(signs, near[0], near[1], near[2])
+
+
+@compiled
 def is_radial(signs, corner):
     """Whether a cubic with a double zero at a corner has at most one zero on every ray from it
     and the signs near the corner and on the far side change at most once with the direction.
 
     On a ray F = s²(α + s β): one zero if the sign near the corner and at the far end differ.
     """
-    if corner == 0:
-        near, zero = (5, 9, 7), (0, 3, 4)
-    elif corner == 1:
-        near, zero = (8, 9, 3), (1, 6, 5)
-    else:
-        near, zero = (4, 9, 6), (2, 7, 8)
-    for z in zero:
-        if signs[z] != 0:
-            return False
-    return _changes_once(signs, near[0], near[1], near[2]) and _far_side_changes_once(signs, corner)
+    return (
+        has_double_zero(signs, corner)
+        and has_one_branch(signs, corner)
+        and _far_side_changes_once(signs, corner)
+    )
 
 
 @compiled

@@ -6,7 +6,13 @@ import numpy as np
 
 from harness.diagram.fast.forms import UNKNOWN, gradient_controls
 from harness.diagram.fast.jit import compiled
-from harness.diagram.fast.leaves import has_cone, is_radial
+from harness.diagram.fast.leaves import (
+    has_cone,
+    has_double_zero,
+    has_one_branch,
+    is_radial,
+    longest,
+)
 
 
 @compiled
@@ -44,7 +50,7 @@ def saddle_bounds(hx, hy, bound):
     unit = 24.0 * bound
     least, steep = np.inf, 0.0
     for r in range(3):
-        steep = max(steep, hx[r, 0] ** 2 + hx[r, 1] ** 2 + hy[r, 0] ** 2 + hy[r, 1] ** 2)
+        steep = max(steep, longest(hx[r], 4.0 * bound) + longest(hy[r], 4.0 * bound))
         for s in range(3):
             det = hx[r, 0] * hy[s, 1] - hx[r, 1] * hy[s, 0]
             slack = unit * (
@@ -57,18 +63,33 @@ def saddle_bounds(hx, hy, bound):
 
 
 @compiled
+def _leaves_corners_once(signs):
+    """Whether at most one arc of the zero set begins at each corner where there is a double zero.
+
+    At other corners on it that are known to be, the gradient is not zero.
+    """
+    for corner in range(3):
+        if has_double_zero(signs, corner) and not has_one_branch(signs, corner):
+            return False
+    return True
+
+
+@compiled
 def has_no_loop(signs, values, bound, controls):
     """Whether the zero set of a cubic certainly contains no closed curve in the triangle.
 
     A loop would surround an extremum.  There is none if F is monotone in some direction, if the
     determinant of its Hessian is negative, if F has at most one zero on every ray from a corner,
-    and if F has no zero at all.  Fills ``controls`` with the control vectors of the gradient.
+    and if F has no zero at all.  Nor do two arcs of the zero set begin at a corner: it is smooth
+    there, or there is a double zero with one branch in T.
+
+    Fills ``controls`` with the control vectors of the gradient.
     """
     if has_cone(values, bound, controls) or keeps_its_sign(signs):
         return True
     hx, hy = np.empty((3, 2)), np.empty((3, 2))
     hessian_controls(values, hx, hy)
-    if saddle_bounds(hx, hy, bound)[0] > 0.0:
+    if saddle_bounds(hx, hy, bound)[0] > 0.0 and _leaves_corners_once(signs):
         return True
     for corner in range(3):
         if is_radial(signs, corner):

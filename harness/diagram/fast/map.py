@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from typing import Any, TypeVar, overload
 
 import numpy as np
@@ -10,10 +11,12 @@ import numpy as np
 from harness.diagram.counts import Domain, Objective
 from harness.diagram.fast.counting import FastDiagram, fast_diagram
 from harness.diagram.fast.courses import ArcCourse
-from harness.diagram.fast.locate import FastLocator, witnesses
-from harness.diagram.fast.nodes import KINDS, owners_around
+from harness.diagram.fast.locate import FastLocator
+from harness.diagram.fast.meeting import Meeting
+from harness.diagram.fast.nodes import KINDS
 from harness.diagram.fast.places import node_point, place_of
 from harness.diagram.fast.walks import Walks
+from harness.diagram.fast.witnesses import witnesses
 from harness.diagram.planar_map import Cell, Edge, Node, PlanarMap, RationalPoint, Walk, Wall
 from harness.diagram.work import Contradiction
 from harness.geometry.instance import Instance
@@ -106,40 +109,30 @@ class _Parts:
     def nodes(self) -> tuple[Node, ...]:
         """All nodes."""
         diagram, arrays, nodes = self.diagram, self.diagram.arrays, self.diagram.nodes
+        meeting = Meeting(diagram)
+        kinds = [KINDS[k] for k in nodes.kind.tolist()]
+        degrees = nodes.degree.tolist()
         result: list[Node] = []
-        for v in range(len(arrays.vertices)):
+        for v, segments in enumerate(meeting.inside()):
             special = arrays.special.get(v)
             if special is not None:
-                result.append(special)
+                result.append(
+                    replace(special, segments=tuple(sorted({*special.segments, *segments})))
+                )
                 continue
-            halves = arrays.out[arrays.out_first[v] : arrays.out_first[v + 1]]
-            around = arrays.owner[arrays.arcs[halves >> 1, 2:]]
-            segments = tuple(sorted({int(k) for k in around.ravel()}))
-            kind = KINDS[nodes.kind[v]]
-            result.append(
-                Node(kind, node_point(diagram, v), segments, len(halves), False, _Later(diagram, v))
-            )
+            point = node_point(diagram, v)
+            result.append(Node(kinds[v], point, segments, degrees[v], False, _Later(diagram, v)))
         for corner in nodes.corners:
             k = len(result)
-            exact = diagram.roots.corners.exact[corner.corner]
-            endpoint = diagram.is_endpoint(corner.corner)
-            result.append(
-                Node(
-                    KINDS[nodes.kind[k]],
-                    (float(exact[0]), float(exact[1])),
-                    tuple(diagram.segments_at_corner(corner, owners_around(arrays, corner))),
-                    len(corner.ports),
-                    endpoint,
-                    _Later(diagram, k),
-                )
-            )
+            segments, endpoint = meeting.at_corner(corner), meeting.is_endpoint(corner)
+            point = node_point(diagram, k)
+            later = _Later(diagram, k)
+            result.append(Node(kinds[k], point, segments, degrees[k], endpoint, later))
         for port in nodes.ports.tolist():
             k = len(result)
-            half = int(arrays.inward[port])
-            pair = sorted({int(x) for x in arrays.owner[arrays.arcs[half >> 1, 2:]]})
-            kind = KINDS[nodes.kind[k]]
-            place = None if kind == "infinity" else _Later(diagram, k)
-            result.append(Node(kind, node_point(diagram, k), tuple(pair), 1, False, place))
+            place = None if kinds[k] == "infinity" else _Later(diagram, k)
+            segments = meeting.at_port(port)
+            result.append(Node(kinds[k], node_point(diagram, k), segments, 1, False, place))
         return tuple(result)
 
     def edges(self) -> tuple[Edge, ...]:

@@ -8,18 +8,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from harness.diagram.fast.arrays import Arrays
-from harness.diagram.fast.chart import Chart, rows_of_leaves
+from harness.diagram.fast.chart import Chart
 from harness.diagram.fast.counting import FastDiagram
+from harness.diagram.fast.enclosures import TiePlace
 from harness.diagram.fast.leaves import CROSSING, QUAD, TRIPLE
 from harness.diagram.fast.nodes import vertex_points
 from harness.diagram.fast.prepare import Floats, Ints
-from harness.diagram.planar_map import Node, RationalPoint
+from harness.diagram.planar_map import Node, Place, RationalPoint
 from harness.geometry.exact import fraction, point
+from harness.geometry.instance import Instance
 
 Extended = NDArray[np.longdouble]
 #: Polished points of ties, one row for every vertex; NaN where that failed.
 _ties: WeakKeyDictionary[FastDiagram, Floats] = WeakKeyDictionary()
 _STEPS = 6
+#: Of the boxes around nodes of which doubles are not certain.
+_BITS = 80
 #: Relative to the size of the instance: the last step of an iteration that has converged.
 _LAST_STEP = 1e-13
 
@@ -60,14 +64,20 @@ def _vertex_point(diagram: FastDiagram, vertex: int) -> tuple[float, float]:
         x, y = _ties[diagram][vertex].tolist()
         if x == x:
             return x, y
-    chart = Chart(diagram, leaf)
-    return chart.plane(chart.vertex(vertex))
+    return middle(TiePlace(Chart(diagram, leaf), vertex))
+
+
+def middle(place: Place) -> tuple[float, float]:
+    """The middle of a small box around a place, as doubles."""
+    (x, y), (z, w) = place.enclosure(_BITS)
+    return float((x + z) / 2), float((y + w) / 2)
 
 
 def _polished(diagram: FastDiagram) -> Floats:
     """The ties of three segments, (v, 2), by Newton's method in the plane from the builder's guess.
 
-    NaN for other vertices, and where the iteration does not converge inside the leaf.
+    NaN for other vertices, and where the iteration does not converge inside the leaf, or to a point
+    that the rounding of the contests leaves uncertain by more than ``_LAST_STEP``.
     """
     arrays, leaves = diagram.arrays, diagram.leaves
     result = np.full((len(arrays.vertices), 2), np.nan)
@@ -83,25 +93,30 @@ def _polished(diagram: FastDiagram) -> Floats:
     # Extended precision, where there is any, for the noise of contests that nearly agree.
     ends = ends.astype(np.longdouble)
     p = vertex_points(diagram.roots, leaves, arrays)[ties].astype(np.longdouble)
-    step = np.zeros_like(p)
+    step = blur = np.zeros_like(p)
     with np.errstate(all="ignore"):
         for _ in range(_STEPS):
-            value, slope = _contests(ends, p)
+            value, slope, noise = _contests(ends, p)
             (a, b), (c, e) = np.moveaxis(slope, 0, 2)
             u, v = value.T
-            step = np.stack([u * e - v * b, v * a - u * c], axis=1) / (a * e - b * c)[:, None]
+            det = a * e - b * c
+            step = np.stack([u * e - v * b, v * a - u * c], axis=1) / det[:, None]
+            steep = np.abs(slope).sum(axis=2)
+            blur = (noise * steep[:, ::-1]).sum(axis=1) / np.abs(det)
             p = p - step
     size = float(np.ptp(diagram.instance.segments.reshape(-1, 2), axis=0).max())
-    small = np.abs(step).max(axis=1, initial=0.0) < _LAST_STEP * size
+    small = np.abs(step).max(axis=1, initial=0.0) + blur < _LAST_STEP * size
     points = p.astype(np.float64)
     good = small & _is_inside(diagram, leaf, points)
     result[ties[good]] = points[good]
     return result
 
 
-def _contests(ends: Extended, p: Extended) -> tuple[Extended, Extended]:
-    """F_01 and F_02 of three segments (k, 3, 2, 2) at points (k, 2): values (k, 2), gradients
-    (k, 2, 2)."""
+def _contests(ends: Extended, p: Extended) -> tuple[Extended, Extended, Extended]:
+    """F_01 and F_02 of three segments (k, 3, 2, 2) at points (k, 2).
+
+    Values (k, 2), gradients (k, 2, 2), and bounds of the values' rounding errors (k, 2).
+    """
     to_a, to_b = ends[:, :, 0] - p[:, None], ends[:, :, 1] - p[:, None]
     d = to_b - to_a
     q, d_q = (to_a * to_b).sum(axis=2), -(to_a + to_b)
@@ -110,17 +125,21 @@ def _contests(ends: Extended, p: Extended) -> tuple[Extended, Extended]:
     sign = np.sign(line)
     line, d_line = line * sign, d_line * sign[:, :, None]
     value = q[:, :1] * line[:, 1:] - q[:, 1:] * line[:, :1]
+    reach = np.abs(to_a).sum(axis=2) * np.abs(to_b).sum(axis=2)
+    wide = np.abs(to_a).sum(axis=2) * np.abs(d).sum(axis=2)
+    noise = (
+        16 * np.finfo(np.longdouble).eps * (reach[:, :1] * wide[:, 1:] + reach[:, 1:] * wide[:, :1])
+    )
     slope = d_q[:, :1] * line[:, 1:, None] + q[:, :1, None] * d_line[:, 1:]
     slope -= d_q[:, 1:] * line[:, :1, None] + q[:, 1:, None] * d_line[:, :1]
-    return value, slope
+    return value, slope, noise
 
 
 def _is_inside(diagram: FastDiagram, leaf: Ints, p: Floats) -> NDArray[np.bool_]:
     """Whether points (k, 2) are inside leaves (k,), as far as doubles tell."""
     leaves, roots = diagram.leaves, diagram.roots
-    rows = rows_of_leaves(diagram)[leaf]
-    exact = np.array([[float(x), float(y)] for x, y in roots.corners.exact]).reshape(-1, 2)
-    corners = np.column_stack([exact, roots.corners.weights])[
+    rows = diagram.rows_of_leaves[leaf]
+    corners = np.column_stack([diagram.corner_points, roots.corners.weights])[
         roots.triangles[leaves.shape_roots[rows]]
     ]
     shapes = leaves.shapes[rows].reshape(-1, 3, 3)
@@ -140,9 +159,14 @@ def _is_inside(diagram: FastDiagram, leaf: Ints, p: Floats) -> NDArray[np.bool_]
 def crossing(diagram: FastDiagram, leaf: int) -> RationalPoint:
     """The common point of the two lines in a crossing leaf, exactly."""
     base = int(diagram.arrays.start[leaf])
+    return common_point(diagram.instance, *diagram.arrays.owner[base : base + 2].tolist())
+
+
+def common_point(instance: Instance, one: int, other: int) -> RationalPoint:
+    """The common point of the lines of two segments, exactly."""
     lines = []
-    for segment in diagram.arrays.owner[base : base + 2].tolist():
-        a, b = (point(end) for end in diagram.instance.rational_segment(segment))
+    for segment in (one, other):
+        a, b = (point(end) for end in instance.rational_segment(segment))
         lines.append((a[1] - b[1], b[0] - a[0], a[0] * b[1] - a[1] * b[0]))
     (a, b, c), (d, e, f) = lines
     w = a * e - b * d

@@ -135,14 +135,14 @@ def classify_saddle(w):
     inside = min(x, y, (1.0 - x - y) * 0.7)
     if not inside > 0.0:
         return FAILED, 0, 0
-    sigma = 0.99 * least / np.sqrt(2.0 * steep)
+    sigma = 0.99 * least / np.sqrt(steep)
     value_and_gradient(values, x, y, out)
     residue = abs(out[1]) + abs(out[2]) + 24.0 * bound
     radius = residue / sigma
     if not radius < inside:
         return FAILED, 0, 0
     # Within the ball |∇F| ≤ residue + radius·‖Hessian‖.
-    reach = 2.0 * bound + 1.01 * radius * (residue + radius * np.sqrt(2.0 * steep))
+    reach = 2.0 * bound + 1.01 * radius * (residue + radius * np.sqrt(steep))
     level = abs(out[0]) + reach
     for k in range(3):
         for r in range(4):

@@ -24,8 +24,8 @@ def search(
     found: Kernel | None,
     seed: int,
     workers: int,
-) -> tuple[Roots, Leaves]:
-    """The leaves of a diagram.
+) -> tuple[Roots, Leaves, Ties]:
+    """The leaves of a diagram, and the ties known at special corners.
 
     Exact ties of many segments make leaves that no halving can resolve.  They are found there,
     become special corners, and everything is subdivided anew.  Raises Contradiction if that does
@@ -35,9 +35,9 @@ def search(
     sense = 1.0 if objective == "smallest" else -1.0
     for _ in range(ROUNDS):
         roots, spans = _roots(prepared, domain, found, seed, hubs)
-        leaves = _settled(prepared, roots, spans, domain, sense, found, hubs, workers)
+        leaves, ties = _settled(prepared, roots, spans, domain, sense, found, hubs, workers)
         if not find_hubs(prepared.instance, roots, leaves, sense, hubs):
-            return roots, leaves
+            return roots, leaves, ties
     raise Contradiction("ever more ties of many segments")
 
 
@@ -62,8 +62,8 @@ def _settled(
     found: Kernel | None,
     hubs: Hubs,
     workers: int,
-) -> Leaves:
-    """Leaves in which all ties at special corners are known."""
+) -> tuple[Leaves, Ties]:
+    """Leaves in which all ties at special corners are known, and these."""
     ties: Ties = ties_at_hubs(prepared.instance, roots, hubs.points, hubs.directions)
     definite = domain == "kernel"
     while True:
@@ -73,5 +73,5 @@ def _settled(
         leaves = find_leaves(prepared, roots, candidates, definite, sense, workers, world)
         new = ties_at_corners(prepared.instance, roots, leaves)
         if new <= ties:
-            return leaves
+            return leaves, ties
         ties |= new

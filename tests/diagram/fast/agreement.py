@@ -65,10 +65,20 @@ def cases(source: str, seed: int, count: int, domain: Domain | None = None) -> I
                 yield from (Case(made, its, objective) for objective in OBJECTIVES)
 
 
-def disagreements(
+@dataclass(frozen=True)
+class Outcome:
+    """What is wrong with a builder's map in words; ``handed_over``: whether the fast builder left
+    the instance to the other; ``judge_failed``: how the judge failed, so that nothing is known."""
+
+    differences: list[str]
+    handed_over: bool = False
+    judge_failed: str = ""
+
+
+def compared(
     case: Case, builder: str = "fast", judge: str = "reference", tolerance: float = TOLERANCE
-) -> list[str]:
-    """What is wrong with a builder's map of a case, in words; nothing if the judge has it too.
+) -> Outcome:
+    """What is wrong with a builder's map of a case; nothing if the judge has it too.
 
     A domain that both refuse is no disagreement.  ``tolerance``: see :mod:`tests.diagram.same_map`.
     """
@@ -79,8 +89,12 @@ def disagreements(
         try:
             build(*arguments, builder=builder)
         except UserError as other:
-            return [] if str(other) == str(refusal) else [f"refused: {other}; not: {refusal}"]
-        return [f"not refused: {refusal}"]
+            same = str(other) == str(refusal)
+            return Outcome([] if same else [f"refused: {other}; not: {refusal}"])
+        return Outcome([f"not refused: {refusal}"])
+    except ArithmeticError as error:
+        build(*arguments, builder=builder).sanity_check()
+        return Outcome([], judge_failed=f"{type(error).__name__}: {error}")
     found = build(*arguments, builder=builder)
     found.sanity_check()
     wrong = [
@@ -91,16 +105,22 @@ def disagreements(
         if mine != theirs and name != "builder"
     ]
     # Without places the matching may exchange alike cells, so where they lie says nothing.
-    seen = tolerance < 1
-    return wrong + differences(found, expected, tolerance=tolerance, witnesses=seen)
+    wrong += differences(found, expected, tolerance=tolerance, witnesses=tolerance < 1)
+    return Outcome(wrong, found.work is not None and found.work.triangles == 0)
 
 
-def examined(case: Case, builder: str = "fast", tolerance: float = TOLERANCE) -> list[str]:
-    """As :func:`disagreements`, with an error as the only difference."""
+def disagreements(case: Case, builder: str = "fast", tolerance: float = TOLERANCE) -> list[str]:
+    """What is wrong with a builder's map of a case; that the judge failed, if it did."""
+    outcome = compared(case, builder, tolerance=tolerance)
+    return outcome.differences + [outcome.judge_failed] * bool(outcome.judge_failed)
+
+
+def examined(case: Case, builder: str = "fast", tolerance: float = TOLERANCE) -> Outcome:
+    """As :func:`compared`, with an error as the only difference."""
     try:
-        return disagreements(case, builder, tolerance=tolerance)
+        return compared(case, builder, tolerance=tolerance)
     except Exception as error:  # any failure of a builder is what is looked for
-        return [f"{type(error).__name__}: {error}"]
+        return Outcome([f"{type(error).__name__}: {error}"])
 
 
 # --- shrinking -----------------------------------------------------------------------------------
@@ -136,7 +156,7 @@ def shrunk(case: Case, builder: str = "fast", tries: int = _SHRINKINGS) -> Case:
     for candidate in smaller(case.instance):
         tries -= 1
         simpler = Case(candidate, case.domain, case.objective)
-        if tries > 0 and _domain_exists(simpler) and examined(simpler, builder):
+        if tries > 0 and _domain_exists(simpler) and examined(simpler, builder).differences:
             return shrunk(simpler, builder, tries)
     return case
 
@@ -152,14 +172,14 @@ def _domain_exists(case: Case) -> bool:
 # --- the long run --------------------------------------------------------------------------------
 
 
-def _examined_together(batch: list[Case], builder: str, tolerance: float) -> list[list[str]]:
+def _examined_together(batch: list[Case], builder: str, tolerance: float) -> list[Outcome]:
     return [examined(case, builder, tolerance) for case in batch]
 
 
-def failures(
+def outcomes(
     every: Sequence[Case], builder: str, jobs: int, patience: float, tolerance: float
-) -> Iterator[tuple[Case, list[str]]]:
-    """The cases that fail, in processes of their own that may hang or die."""
+) -> Iterator[tuple[Case, Outcome]]:
+    """What becomes of every case, in processes of their own that may hang or die."""
     batches = [list(every[k : k + 6]) for k in range(0, len(every), 6)]
     with ProcessPool(max_workers=jobs) as pool:
         waiting = [
@@ -173,10 +193,8 @@ def failures(
             try:
                 results = future.result()
             except (LateError, ProcessExpired) as error:
-                results = [[f"{type(error).__name__} in a batch: {error}"]] * len(batch)
-            for case, found in zip(batch, results, strict=True):
-                if found:
-                    yield case, found
+                results = [Outcome([f"{type(error).__name__} in a batch: {error}"])] * len(batch)
+            yield from zip(batch, results, strict=True)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -203,16 +221,27 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for source in options.family or SOURCES:
         start = time.perf_counter()
         every = list(cases(source, options.seed, options.count, options.domain))
-        failed = 0
+        failed = handed_over = open_cases = 0
         limits = options.jobs, options.timeout, options.tolerance
-        for case, found in failures(every, options.builder, *limits):
+        for case, outcome in outcomes(every, options.builder, *limits):
+            handed_over += outcome.handed_over
+            if outcome.judge_failed:
+                open_cases += 1
+                name = f"open-{source}-{options.seed}-{open_cases}.json"
+                (options.out / name).write_text(case.to_json([outcome.judge_failed]), "utf-8")
+            if not outcome.differences:
+                continue
             failed += 1
             if failed <= options.most:
                 name = f"fail-{source}-{options.seed}-{failed}.json"
-                _report(case, found, options.out / name, options)
+                _report(case, outcome.differences, options.out / name, options)
         totals[source] = failed
         seconds = time.perf_counter() - start
-        print(f"{source}: {failed} of {len(every)} failed, {seconds:.0f} s", flush=True)
+        print(
+            f"{source}: {failed} of {len(every)} failed, {handed_over} handed over, "
+            f"{open_cases} without a judge, {seconds:.0f} s",
+            flush=True,
+        )
     return 1 if any(totals.values()) else 0
 
 
@@ -222,16 +251,19 @@ def _report(case: Case, found: list[str], path: Path, options: argparse.Namespac
     if options.shrink and "in a batch" not in found[0]:
         small = shrunk(case, options.builder)
         away = path.with_name(f"small-{path.name}")
-        away.write_text(small.to_json(examined(small, options.builder)), encoding="utf-8")
+        away.write_text(
+            small.to_json(examined(small, options.builder).differences), encoding="utf-8"
+        )
 
 
 def _again(paths: Sequence[Path], builder: str) -> int:
     """Try written failures again."""
     failed = 0
     for path in paths:
-        found = examined(Case.from_json(path.read_text(encoding="utf-8")), builder)
-        failed += bool(found)
-        print(f"{path}: {'; '.join(found[:3]) or 'agrees'}", flush=True)
+        outcome = examined(Case.from_json(path.read_text(encoding="utf-8")), builder)
+        failed += bool(outcome.differences)
+        said = "; ".join(outcome.differences[:3]) or outcome.judge_failed or "agrees"
+        print(f"{path}: {said}", flush=True)
     return 1 if failed else 0
 
 

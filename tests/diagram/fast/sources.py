@@ -88,7 +88,7 @@ def _symmetric(rng: Random, _: int) -> Plain:
         image = rng.choice(images)
         orbits = [image(_point(rng, 5)) for _ in range(rng.randint(1, 4))]
         points = around_origin(p for orbit in orbits for p in orbit)
-        if len(points) <= 8 and star_shaped_about_origin(points):
+        if 3 <= len(points) <= 8 and star_shaped_about_origin(points):
             return "polygon", points
 
 
