@@ -18,8 +18,14 @@ from harness.diagram.fast.jit import compiled
 from harness.diagram.fast.leaves import EMPTY, FAILED, HARD, OPEN, QUAD
 from harness.diagram.fast.memory import borrowed
 from harness.diagram.fast.mixed import classify_mixed
-from harness.diagram.fast.prune import keep, localise, prune
-from harness.diagram.fast.sides import MOST_PAIRED, all_pairs, new_scratch
+from harness.diagram.fast.prune import find_signs, keep, localise, prune, prune_pairs
+from harness.diagram.fast.sides import (
+    MOST_PAIRED,
+    all_pairs,
+    beaten_by_one,
+    compact,
+    new_scratch,
+)
 
 #: Columns of ``norms``: ML and MQ on the triangle, on the root; flags; number of the candidate in
 #: its root; ML and MQ of the fine table.
@@ -79,40 +85,19 @@ def examine(tables, norms, ids, start, m, factor, place, scene, desk):
     definite, world, special = scene
     work, sides, scratch, _, _ = desk
     far, spots, exponents, lam, corners = place
-    m, tests = prune(tables, norms, ids, start, m, factor, far, definite, work, world, spots)
-    lsign, qsign = work[1], work[2]
-    if m == 1:
-        scratch[4][0, 0], scratch[4][0, 1] = 1, 0
-        return m, tests, EMPTY, 0, 0
+    lsign, qsign, tests = work[1], work[2], 0
     if m > MOST_PAIRED:
-        return m, tests, FAILED, 0, 0
-    mixed = False
-    for a in range(m):
-        mixed = mixed or lsign[a] == 0
-        sides[a] = lsign[a] if lsign[a] != 0 else 1
-    lines = world[0]
-    if m == 2 and lines[ids[start]] >= 0 and lines[ids[start]] == lines[ids[start + 1]]:
-        mixed = False
-    if not mixed:
-        all_pairs(tables, start, m, sides, norms, factor, far, world, spots, ids, scratch)
-        if m > 2 and beaten_by_two(m, scratch, work[3]) < m:
-            m = keep(tables, norms, ids, start, m, lsign, qsign, work[3])
-            for a in range(m):
-                sides[a] = lsign[a] if lsign[a] != 0 else 1
-            all_pairs(tables, start, m, sides, norms, factor, far, world, spots, ids, scratch)
-        if m == 1:
-            scratch[4][0, 0], scratch[4][0, 1] = 1, 0
-            return m, tests, EMPTY, 0, 0
-        if m <= 4:
-            kind, ports, choice = classify_definite(m, scratch)
-            if kind != FAILED:
-                return m, tests, kind, ports, choice
-        if is_blurred(m, scratch) or may_tie_at_corner(
-            m, scratch, exponents, lam, corners, special
-        ):
-            return m, tests, HARD, 0, 0
-        return m, tests, FAILED, 0, 0
-    if m == 2 and qsign[0] != 0 and qsign[0] == qsign[1]:
+        m, tests = prune(tables, norms, ids, start, m, factor, far, definite, work, world, spots)
+        if m > MOST_PAIRED:
+            return m, tests, FAILED, 0, 0
+    else:
+        find_signs(tables, norms, start, m, factor, definite, work)
+    if m > 1 and _is_mixed(m, ids, start, lsign, world[0]):
+        tests += m * (m - 1)
+        m = prune_pairs(tables, norms, ids, start, m, factor, far, work, world, spots)
+    if m > 1 and _is_mixed(m, ids, start, lsign, world[0]):
+        if m > 2 or qsign[0] == 0 or qsign[0] != qsign[1]:
+            return m, tests, FAILED, 0, 0
         bound = factor * (
             norms[start, 1] * norms[start + 1, 0] + norms[start + 1, 1] * norms[start, 0]
         )
@@ -121,7 +106,39 @@ def examine(tables, norms, ids, start, m, factor, place, scene, desk):
             tables, start, start + 1, lsign[0], lsign[1], qsign[0], bound, far, known, scratch
         )
         return m, tests, kind, ports, choice
+    if m > 1:
+        tests += m * (m - 1) // 2
+        for a in range(m):
+            sides[a] = lsign[a] if lsign[a] != 0 else 1
+        all_pairs(tables, start, m, sides, norms, factor, far, world, spots, ids, scratch)
+        beaten = work[3]
+        if beaten_by_one(m, scratch, beaten) < m:
+            compact(m, sides, scratch, beaten)
+            m = keep(tables, norms, ids, start, m, lsign, qsign, beaten)
+        if m > 2 and beaten_by_two(m, scratch, beaten) < m:
+            compact(m, sides, scratch, beaten)
+            m = keep(tables, norms, ids, start, m, lsign, qsign, beaten)
+    if m == 1:
+        scratch[4][0, 0], scratch[4][0, 1] = 1, 0
+        return m, tests, EMPTY, 0, 0
+    if m <= 4:
+        kind, ports, choice = classify_definite(m, scratch)
+        if kind != FAILED:
+            return m, tests, kind, ports, choice
+    if is_blurred(m, scratch) or may_tie_at_corner(m, scratch, exponents, lam, corners, special):
+        return m, tests, HARD, 0, 0
     return m, tests, FAILED, 0, 0
+
+
+@compiled
+def _is_mixed(m, ids, start, lsign, lines):
+    """Whether the line of some candidate crosses the triangle (two on one line do not matter)."""
+    if m == 2 and lines[ids[start]] >= 0 and lines[ids[start]] == lines[ids[start + 1]]:
+        return False
+    for a in range(m):
+        if lsign[a] == 0:
+            return True
+    return False
 
 
 @compiled

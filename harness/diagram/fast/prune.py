@@ -149,8 +149,22 @@ def _fine_best_at(tables, start, m, corner, far):
 
 
 @compiled
+def find_signs(tables, norms, start, m, factor, definite, work):
+    """The signs of L and Q of all candidates on the triangle (0: not constant)."""
+    _, lsign, qsign, _ = work
+    for a in range(m):
+        if definite:
+            lsign[a] = 1
+            qsign[a] = 0
+        else:
+            lsign[a] = _line_sign(tables, start + a, factor * norms[start + a, 0])
+            qsign[a] = _form_sign(tables, start + a, factor * norms[start + a, 1])
+
+
+@compiled
 def prune(tables, norms, ids, start, m, factor, far, definite, work, world, spots):
-    """Drop candidates beaten by a pivot; the number left, moved to the front (stable)."""
+    """Drop candidates beaten by a pivot; the number left, moved to the front (stable), and that of
+    tests."""
     pivots, lsign, qsign, beaten = work
     count = 0
     for corner in range(4):
@@ -166,12 +180,7 @@ def prune(tables, norms, ids, start, m, factor, far, definite, work, world, spot
             count += 1
     for a in range(m):
         beaten[a] = 0
-        if definite:
-            lsign[a] = 1
-            qsign[a] = 0
-        else:
-            lsign[a] = _line_sign(tables, start + a, factor * norms[start + a, 0])
-            qsign[a] = _form_sign(tables, start + a, factor * norms[start + a, 1])
+    find_signs(tables, norms, start, m, factor, definite, work)
     tests = 0
     for a in range(m):
         for r in range(count):
@@ -182,12 +191,7 @@ def prune(tables, norms, ids, start, m, factor, far, definite, work, world, spot
             if _tested(tables, norms, ids, start, p, a, lsign, qsign, factor, far, world, spots):
                 beaten[a] = 1
                 break
-    kept = keep(tables, norms, ids, start, m, lsign, qsign, beaten)
-    if 1 < kept <= 6:
-        kept = _prune_pairs(
-            tables, norms, ids, start, kept, lsign, qsign, beaten, factor, far, world, spots
-        )
-    return kept, tests
+    return keep(tables, norms, ids, start, m, lsign, qsign, beaten), tests
 
 
 @compiled
@@ -228,7 +232,9 @@ def _tested(tables, norms, ids, start, p, a, lsign, qsign, factor, far, world, s
 
 
 @compiled
-def _prune_pairs(tables, norms, ids, start, m, lsign, qsign, beaten, factor, far, world, spots):
+def prune_pairs(tables, norms, ids, start, m, factor, far, work, world, spots):
+    """Drop candidates beaten by any other; the number left.  O(m²)."""
+    _, lsign, qsign, beaten = work
     for a in range(m):
         beaten[a] = 0
     for a in range(m):
@@ -242,5 +248,4 @@ def _prune_pairs(tables, norms, ids, start, m, lsign, qsign, beaten, factor, far
             ):
                 beaten[a] = 1
                 break
-    kept = keep(tables, norms, ids, start, m, lsign, qsign, beaten)
-    return kept
+    return keep(tables, norms, ids, start, m, lsign, qsign, beaten)

@@ -113,6 +113,54 @@ def all_pairs(tables, start, m, sides, norms, factor, far, world, spots, ids, w)
 
 
 @compiled
+def beaten_by_one(m, w, beaten):
+    """Mark candidates that certainly lose to another on the whole triangle; how many do not."""
+    signs = w[1]
+    left = m
+    for x in range(m):
+        beaten[x] = 0
+        for u in range(m):
+            if u != x and _is_never_negative(signs[u, x]):
+                beaten[x] = 1
+                left -= 1
+                break
+    return left
+
+
+@compiled
+def _is_never_negative(signs):
+    """Whether no coefficient can be negative and one is positive."""
+    some = False
+    for c in range(10):
+        if signs[c] == -1 or signs[c] == UNKNOWN:
+            return False
+        some = some or signs[c] == 1
+    return some
+
+
+@compiled
+def compact(m, sides, w, beaten):
+    """Move what is known of the pairs of candidates that are not beaten to the front."""
+    values, signs, bounds = w[0], w[1], w[2]
+    row = 0
+    for a in range(m):
+        if beaten[a]:
+            continue
+        column = 0
+        for b in range(m):
+            if beaten[b]:
+                continue
+            if row != column and (row != a or column != b):
+                bounds[row, column] = bounds[a, b]
+                for c in range(10):
+                    values[row, column, c] = values[a, b, c]
+                    signs[row, column, c] = signs[a, b, c]
+            column += 1
+        sides[row] = sides[a]
+        row += 1
+
+
+@compiled
 def rounding(tables, values):
     """How far values are off after rounding to doubles, if they come from fine tables."""
     if not is_fine(tables):
