@@ -1,4 +1,4 @@
-"""Where the reference builder's nodes and edges lie: exact boxes, polylines, ranges of cot θ."""
+"""Where the reference builder's nodes and edges lie: boxes, polylines, directions at infinity."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from harness.diagram.algebra import FIRST_PRECISION, NotGeneric, Point
 from harness.diagram.arcs import Arc
-from harness.diagram.fibres import intersect, rational_between
+from harness.diagram.cotangents import cotangent_values
+from harness.diagram.fibres import rational_between
 from harness.diagram.planar_map import RationalPoint, Window
 from harness.diagram.scene import Scene
 
@@ -91,73 +92,13 @@ class ExactCourse:
         return np.array(points)
 
     def cotangent_range(self) -> tuple[float, float]:
-        """See :attr:`harness.diagram.planar_map.Edge.cotangent_range`.
-
-        cot θ is monotone between the points of the edge where the level circles of the two
-        segments are tangent, that is, where the gradients of their cotangents are parallel.
-        """
+        """See :attr:`harness.diagram.planar_map.Edge.cotangent_range`."""
         values = [
             value
             for arc, _ in self.chain
-            for value in [*_end_values(self.scene, arc, self.segments), *self._tangencies(arc)]
+            for value in cotangent_values(self.scene, arc, self.segments)
         ]
         return min(values), max(values)
-
-    def _tangencies(self, arc: Arc) -> list[float]:
-        curve = arc.slabs.polynomial
-        jacobian = self.scene.jacobian(*self.segments)
-        if curve.mpoly.gcd(jacobian.mpoly).total_degree() > 0:
-            return []  # cot θ is constant: the curve is a circle through all four endpoints
-        return [
-            cotangent_float(self.scene, self.segments, p)
-            for p in intersect(curve, jacobian)
-            if arc.contains(p)
-        ]
-
-
-def cotangent_float(scene: Scene, segments: tuple[int, int], p: Point) -> float:
-    """cot θ of the two tied segments at p as a double; ±inf where θ is 0 or π.
-
-    p must not be an endpoint of both.
-    """
-    for k in segments:
-        level = scene.level(k, p)
-        if level:
-            return level * math.inf
-        if level == 0:
-            u, v = p.balls(4 * FIRST_PRECISION)
-            with ctx.workprec(4 * FIRST_PRECISION):
-                return float(scene.cotangent(k, u, v).mid())
-    raise ArithmeticError("the visual angles have no value at a common endpoint")
-
-
-def _end_values(scene: Scene, arc: Arc, segments: tuple[int, int]) -> list[float]:
-    """The limits of cot θ at both ends of an arc."""
-    values = []
-    for end in (arc.start, arc.end):
-        if end is None:
-            values.append(math.inf)
-        elif all(scene.level(k, end) is None for k in segments):
-            values.append(_limit_at_endpoint(scene, arc, end, segments[0]))
-        else:
-            values.append(cotangent_float(scene, segments, end))
-    return values
-
-
-def _limit_at_endpoint(scene: Scene, arc: Arc, end: Point, segment: int) -> float:
-    """The limit of cot θ along an arc into an endpoint of the segment.
-
-    There θ depends on the direction alone: it is the angle between the segment and the direction
-    opposite to the one from which its endpoint is approached; that direction is taken from a point
-    of the arc 2^-60 of its length away.
-    """
-    low, high = _open_range(arc, fmpq(FAR) if arc.start is None or arc.end is None else fmpq(0))
-    step = (high - low) / FAR
-    near = _at(arc, low + step if end is arc.start else high - step)
-    bits = 4 * FIRST_PRECISION
-    with ctx.workprec(bits):
-        u, v = near.balls(bits)
-        return float(scene.cotangent(segment, u, v).mid())
 
 
 def _limit(scene: Scene, window: Window | None) -> fmpq:

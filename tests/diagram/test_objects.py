@@ -31,12 +31,14 @@ def size_of(instance: Instance) -> float:
     return float(np.ptp(instance.segments.reshape(-1, 2), axis=0).max())
 
 
-@pytest.fixture(scope="module", params=["plane", "largest", "kernel", "square"])
+@pytest.fixture(scope="module", params=["plane", "largest", "kernel", "square", "corner"])
 def diagram(request: pytest.FixtureRequest) -> PlanarMap:
     if request.param == "kernel":
         return build(polygon((6, 1), (5, 4), (1, 5), (-4, 6), (-6, 0), (-3, -5), (3, -4)))
     if request.param == "square":
         return build(polygon(*SQUARE), "plane")
+    if request.param == "corner":
+        return build(segments(((0, 0), (3, 1)), ((0, 0), (-1, 5))))
     return build(FIVE, objective="largest" if request.param == "largest" else "smallest")
 
 
