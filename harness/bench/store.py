@@ -115,8 +115,10 @@ class Store:
                 f"{self._directory / MANIFEST}: written with benchmark schema "
                 f"{manifest.get('bench_schema')!r}, this avd has {BENCH_SCHEMA}; store elsewhere"
             )
-        runs: list[dict[str, Any]] = manifest["runs"]
+        runs: list[dict[str, Any]] = manifest.get("runs", [])
         for run in runs:
+            if type(run.get("run")) is not int:
+                raise UserError(f"{self._directory / MANIFEST}: a run without a number")
             run["interrupted"] = run["interrupted"] or run["end"] is None
         return runs
 
