@@ -27,6 +27,7 @@ README = (ROOT / "README.md").read_text(encoding="utf-8")
 #: From the ground up.  A room may use those before it; the generators use nothing at all.
 ROOMS = (
     "errors",
+    "files",
     "geometry",
     "diagram",
     "generators",

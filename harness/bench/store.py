@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import harness
 from harness.bench.rows import NAME, columns_of
 from harness.errors import UserError
+from harness.files import replace
 from harness.study.manifest import (
     MANIFEST,
     git_commit,
@@ -25,7 +26,7 @@ from harness.study.manifest import (
     write_manifest,
 )
 from harness.study.schema import SCHEMA, Record
-from harness.study.store import ROWS, replace
+from harness.study.store import ROWS
 
 if TYPE_CHECKING:
     from harness.bench.benchmark import Benchmark

@@ -12,12 +12,9 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from harness.diagram.counts import DOMAINS, OBJECTIVES
-from harness.errors import UserError
+from harness.errors import UserError, shown
 from harness.study.outcome import COUNT_COLUMNS, STATUSES
 from harness.study.schema import Record
-
-_LONGEST = 40
-"""How much of a wrong value an error shows."""
 
 
 def check_row(row: Record, where: str) -> None:
@@ -35,10 +32,7 @@ def check_row(row: Record, where: str) -> None:
 
 
 def _wrong(where: str, key: str, value: object, wanted: str) -> UserError:
-    shown = repr(value)
-    if len(shown) > _LONGEST:
-        shown = shown[:_LONGEST] + "…"
-    return UserError(f"{where}: {key}: {shown} must be {wanted}")
+    return UserError(f"{where}: {key}: {shown(value)} must be {wanted}")
 
 
 def _is_whole(text: str) -> bool:

@@ -22,9 +22,9 @@ import psutil
 
 import harness
 from harness.errors import UserError
+from harness.files import replace
 from harness.study.checks import check_manifest
 from harness.study.schema import SCHEMA, migrate_manifest
-from harness.study.store import replace
 from harness.study.task import SEED_RULE
 
 if TYPE_CHECKING:

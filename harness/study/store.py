@@ -17,6 +17,7 @@ from types import TracebackType
 from typing import Self
 
 from harness.errors import UserError
+from harness.files import replace
 from harness.study.checks import check_row
 from harness.study.outcome import COLUMNS
 from harness.study.schema import Record, migrate_row
@@ -132,13 +133,3 @@ def replace_rows(path: Path, rows: Iterable[Record]) -> None:
     """Write a rows file anew, in one step."""
     header = dict(zip(COLUMNS, COLUMNS, strict=True))
     replace(path, as_lines([header, *rows]))
-
-
-def replace(path: Path, content: bytes) -> None:
-    """Write a file in one step: a reader, or a crash, sees the old or the new content."""
-    temporary = path.with_name(path.name + ".tmp")
-    with open(temporary, "wb") as file:
-        file.write(content)
-        file.flush()
-        os.fsync(file.fileno())
-    os.replace(temporary, path)
