@@ -68,7 +68,7 @@ def around_origin(points: Iterable[Point]) -> tuple[Point, ...]:
 
 def star_shaped_about_origin(vertices: Sequence[Point]) -> bool:
     """Whether vertices sorted by angle leave the origin strictly left of every edge."""
-    following = (*vertices[1:], vertices[0])
+    following = (*vertices[1:], *vertices[:1])
     return len(vertices) >= 3 and all(
         cross((0, 0), p, q) > 0 for p, q in zip(vertices, following, strict=True)
     )

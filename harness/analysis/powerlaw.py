@@ -50,7 +50,7 @@ def power_law(n: Floats, values: Floats, draws: Floats | None) -> PowerLaw:
     """
     zeros = np.flatnonzero(values <= 0)
     start = int(zeros[-1]) + 1 if len(zeros) else 0
-    if len(n) - start < LEAST_SIZES:
+    if len(np.unique(n[start:])) < LEAST_SIZES:
         why = "counts of zero" if start else f"fewer than {LEAST_SIZES} sizes"
         return PowerLaw(None, None, None, None, f"undefined: {why}")
     x = np.log(n[start:])

@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING
 
 import generators
 from harness.diagram.counts import Domain, Objective
-from harness.errors import UserError
+from harness.errors import UserError, suggestion
 from harness.study.limits import Limits
 from harness.study.task import Scalar, Task
-from harness.study.values import suggestion
 
 if TYPE_CHECKING:
     from harness.diagram.counts import Counts
@@ -167,9 +166,6 @@ class Benchmark:
         cases = {case.name: case for case in (self.quick if quick else self.cases)}
         for name in names or ():
             if name not in cases:
-                known = f"; they are {', '.join(cases)}"
-                raise UserError(
-                    f"the benchmark {self.name} has no instance {name!r}"
-                    f"{suggestion(name, cases) or known}"
-                )
+                hint = suggestion(name, cases) or f"they are {', '.join(cases)}"
+                raise UserError(f"the benchmark {self.name} has no instance {name!r}; {hint}")
         return [case for case in cases.values() if names is None or case.name in names]

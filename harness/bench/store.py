@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import harness
 from harness.bench.rows import NAME, columns_of
 from harness.errors import UserError
+from harness.files import replace
 from harness.study.manifest import (
     MANIFEST,
     git_commit,
@@ -25,7 +26,7 @@ from harness.study.manifest import (
     write_manifest,
 )
 from harness.study.schema import SCHEMA, Record
-from harness.study.store import ROWS, replace
+from harness.study.store import ROWS
 
 if TYPE_CHECKING:
     from harness.bench.benchmark import Benchmark
@@ -115,8 +116,10 @@ class Store:
                 f"{self._directory / MANIFEST}: written with benchmark schema "
                 f"{manifest.get('bench_schema')!r}, this avd has {BENCH_SCHEMA}; store elsewhere"
             )
-        runs: list[dict[str, Any]] = manifest["runs"]
+        runs: list[dict[str, Any]] = manifest.get("runs", [])
         for run in runs:
+            if type(run.get("run")) is not int:
+                raise UserError(f"{self._directory / MANIFEST}: a run without a number")
             run["interrupted"] = run["interrupted"] or run["end"] is None
         return runs
 

@@ -54,6 +54,7 @@ def run(args: argparse.Namespace) -> int:
         args.usage_error(f"-o {target}: a picture is {', '.join(PICTURES[:-1])} or {PICTURES[-1]}")
 
     from harness.diagram import build
+    from harness.files import replace
     from harness.report.drawing import render
 
     instance = load(args.file)
@@ -70,5 +71,5 @@ def run(args: argparse.Namespace) -> int:
     if target is None:
         sys.stdout.buffer.write(picture)
     else:
-        target.write_bytes(picture)  # made as a whole before: a failure leaves no half picture
+        replace(target, picture)
     return 0

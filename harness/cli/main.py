@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import argparse
-import difflib
 import importlib
-import os
 import sys
 from collections.abc import Sequence
-from typing import NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
-from harness.errors import UserError
+from harness.cli.streams import abandon_output, flush_or_abandon_output, occupy_closed
+from harness.errors import UserError, suggestion
+
+if TYPE_CHECKING:
+    from _typeshed import SupportsWrite
 
 #: The verbs in the order in which a newcomer meets them; each is a module of this room with
 #: ``register(subparsers)`` and ``run(args) -> int``.
@@ -25,6 +27,10 @@ benchmark failed, 130 interrupted (finished work is kept)
 
 class Parser(argparse.ArgumentParser):
     """An argument parser that suggests the name that was probably meant."""
+
+    def print_help(self, file: SupportsWrite[str] | None = None) -> None:
+        """Print the help; unlike argparse's own, raise OSError if that is impossible."""
+        (file or sys.stdout).write(self.format_help())
 
     def error(self, message: str) -> NoReturn:
         """Print one line and exit with status 2."""
@@ -60,21 +66,19 @@ def build_parser() -> Parser:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run ``avd`` with ``argv`` (default: the process's arguments); return the exit status."""
-    arguments = list(sys.argv[1:] if argv is None else argv)
-    parser = build_parser()
-    _suggest_verb(parser, arguments)
-    args = parser.parse_args(arguments)
+    occupy_closed()
     try:
-        status = int(args.run(args))
-        sys.stdout.flush()  # here, where a reader that has gone away can still be noticed
+        try:
+            return _run(list(sys.argv[1:] if argv is None else argv))
+        finally:
+            sys.stdout.flush()  # here, where a reader that has gone away can still be noticed
     except UserError as error:
         return _fail(str(error))
-    except BrokenPipeError:
-        # The reader (head, less) has seen enough.  Python flushes stdout once more at exit, so
-        # give it somewhere to flush to.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except BrokenPipeError:  # the reader (head, less) has seen enough
+        abandon_output()
         return 0
     except OSError as error:
+        flush_or_abandon_output()
         where = f"{error.filename}: " if error.filename is not None else ""
         return _fail(f"{where}{error.strerror or error}")
     except UnicodeError as error:
@@ -82,7 +86,13 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("avd: interrupted", file=sys.stderr)
         return 130
-    return status
+
+
+def _run(arguments: Sequence[str]) -> int:
+    parser = build_parser()
+    _suggest_verb(parser, arguments)
+    args = parser.parse_args(arguments)
+    return int(args.run(args))
 
 
 def _fail(message: str) -> int:
@@ -94,8 +104,7 @@ def _suggest_verb(parser: Parser, arguments: Sequence[str]) -> None:
     """Reject an unknown verb with a suggestion instead of argparse's list of choices."""
     if not arguments or arguments[0].startswith("-") or arguments[0] in VERBS:
         return
-    close = difflib.get_close_matches(arguments[0], VERBS, n=1)
-    hint = f"did you mean {close[0]!r}?" if close else f"the verbs are {', '.join(VERBS)}"
+    hint = suggestion(arguments[0], VERBS) or f"the verbs are {', '.join(VERBS)}"
     parser.error(f"unknown verb {arguments[0]!r}: {hint}")
 
 

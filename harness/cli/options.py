@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from typing import TYPE_CHECKING
 
 from harness.diagram import BUILDERS
@@ -42,6 +41,7 @@ def load(path: str) -> Instance:
     Raises:
         UserError: names the file, the index and the reason.
     """
+    from harness.cli.streams import read_input
     from harness.errors import UserError
     from harness.geometry.formats import parse_instance, read_instance
     from harness.geometry.validation import validate
@@ -49,11 +49,13 @@ def load(path: str) -> Instance:
     if path == "-":
         source = "standard input"
         try:
-            instance = parse_instance(sys.stdin.read(), source)
+            instance = parse_instance(read_input(), source)
         except UserError as error:
             raise UserError(f"{source}: {error}") from None
         except UnicodeDecodeError:
             raise UserError(f"{source}: not text (UTF-8)") from None
+        except OSError as error:
+            raise UserError(f"{source}: {error.strerror or error}") from None
     else:
         instance = read_instance(path)
     validate(instance)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from harness.diagram.counts import default_domain
 from harness.errors import UserError
 
 if TYPE_CHECKING:
@@ -39,7 +40,7 @@ def build(
     """
     if builder not in BUILDERS:
         raise UserError(f"unknown builder {builder!r}: choose from {', '.join(BUILDERS)}")
-    domain = domain or ("kernel" if instance.kind == "polygon" else "plane")
+    domain = domain or default_domain(instance.kind)
     corners = domain_corners(instance, domain)
     if builder == "fast":
         return _fast_or_reference(instance, domain, objective, corners, workers)

@@ -177,8 +177,8 @@ def bisector_arcs(scene: Scene, region: Region, curve: Component) -> list[Arc]:
     for arc in trace(curve.polynomial, list(curve.events.values()), region.strip):
         slab = arc.sample_slab()
         p = arc.at(arc.slabs.sample(slab))
-        tied = _tie_at(scene, curve, p)
-        if not tied or region.side(p) <= 0:
+        tied = _tie_at(scene, region, curve, p)
+        if not tied:
             continue
         arc.below = scene.side_winner(tied, p, above=False)
         arc.above = scene.side_winner(tied, p, above=True)
@@ -187,13 +187,18 @@ def bisector_arcs(scene: Scene, region: Region, curve: Component) -> list[Arc]:
     return found
 
 
-def _tie_at(scene: Scene, curve: Component, p: Point) -> tuple[int, ...]:
-    """All winners at p if the curve is a tie of two of them there; otherwise none."""
+def _tie_at(scene: Scene, region: Region, curve: Component, p: Point) -> tuple[int, ...]:
+    """All winners at p if it is inside the domain and the curve is a tie of two; otherwise none.
+
+    Outside, p may be an endpoint of a segment; inside, those are events and never samples.
+    """
     u, v = p.balls(FIRST_PRECISION)
     for i, j, sign in curve.ties:
         with ctx.workprec(FIRST_PRECISION):
             hopeless = not scene.may_win(i, u, v)
         if not hopeless and scene.side(i, p) * scene.side(j, p) == sign:
+            if region.side(p) <= 0:
+                return ()
             winners = scene.winners(p, tied=frozenset((i, j)))
             if i in winners and j in winners:
                 return winners

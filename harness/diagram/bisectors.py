@@ -181,20 +181,10 @@ def _meetings(
     scene: Scene, region: Region, curves: list[Component], known: dict[Key, Point]
 ) -> Iterator[Point]:
     """The points where two components with a common segment meet and their tie is the best."""
-    by_pair: dict[tuple[int, int], list[tuple[int, Component]]] = defaultdict(list)
-    for curve in curves:
-        for i, j, sign in curve.ties:
-            by_pair[i, j].append((sign, curve))
-    seen: set[frozenset[int]] = set()
+    for (f, g), shared in _related(scene, curves).items():
 
-    def meet(tied: tuple[int, ...], f: Component, g: Component) -> Iterator[Point]:
-        pair = frozenset((id(f), id(g)))
-        if f is g or pair in seen:
-            return
-        seen.add(pair)
-
-        def plausible(u: arb, v: arb) -> bool:
-            return not region.surely_outside(u, v) and scene.may_win(tied[0], u, v)
+        def plausible(u: arb, v: arb, shared: frozenset[int] = frozenset(shared)) -> bool:
+            return not region.surely_outside(u, v) and any(scene.may_win(i, u, v) for i in shared)
 
         for p in intersect(f.polynomial, g.polynomial, region.strip, plausible):
             if _is_among(known, p) or region.side(p) < 0:
@@ -202,13 +192,32 @@ def _meetings(
             if len(scene.winners(p)) > 1:
                 yield p
 
-    for (i, j), related in by_pair.items():
+
+def _related(scene: Scene, curves: list[Component]) -> dict[tuple[Component, Component], set[int]]:
+    """The pairs of components to be intersected, with the segments whose tie may be there.
+
+    In symmetric input one component is a bisector of several pairs of segments, so one pair of
+    components can be where several triples tie: another one may win at each of their points.
+    """
+    by_pair: dict[tuple[int, int], list[tuple[int, Component]]] = defaultdict(list)
+    for curve in curves:
+        for i, j, sign in curve.ties:
+            by_pair[i, j].append((sign, curve))
+    rank = {curve: k for k, curve in enumerate(curves)}
+    found: dict[tuple[Component, Component], set[int]] = defaultdict(set)
+
+    def relate(f: Component, g: Component, segment: int) -> None:
+        if f is not g:
+            found[(f, g) if rank[f] < rank[g] else (g, f)].add(segment)
+
+    for (i, _), related in by_pair.items():
         for (sign, f), (other, g) in itertools.combinations(related, 2):
             if sign == other:
-                yield from meet((i, j), f, g)
+                relate(f, g, i)
     for i, j, k in itertools.combinations(range(scene.n), 3):
         for (_, f), (_, g) in itertools.product(by_pair[i, j], by_pair[i, k]):
-            yield from meet((i, j, k), f, g)
+            relate(f, g, i)
+    return found
 
 
 def _wall_events(

@@ -22,6 +22,11 @@ NODE_KINDS: tuple[NodeKind, ...] = (
 )
 
 
+def default_domain(kind: str) -> Domain:
+    """Where a diagram is built if nobody says: the kernel of a polygon, the plane for segments."""
+    return "kernel" if kind == "polygon" else "plane"
+
+
 @dataclass(frozen=True)
 class Counts:
     """How many objects of each kind an angular Voronoi diagram has.

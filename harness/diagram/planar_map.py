@@ -94,7 +94,8 @@ class Edge:
         """Points from start to end, shape (m, 2), within ``tolerance`` of the true curve.
 
         Unbounded ends are followed until they have left ``window`` (xmin, ymin, xmax, ymax), by
-        default three times the box of the segments and nodes.
+        default three times the box of the segments.  As far from it as it is wide, and further
+        out, the curve may be off by more, in proportion to the distance.
         """
         return self.course.polyline(tolerance, window)
 

@@ -24,6 +24,7 @@ from harness.diagram.algebra import NotGeneric
 from harness.diagram.arcs import bisector_arcs, wall_arcs
 from harness.diagram.assemble import Assembly
 from harness.diagram.bisectors import Register, components, find_events
+from harness.diagram.cotangents import check_common_endpoints
 from harness.diagram.counts import Domain, Objective
 from harness.diagram.domain import Region
 from harness.diagram.locate import Locator, unsheared
@@ -71,6 +72,7 @@ def _build(
     shear: int,
 ) -> PlanarMap:
     scene = Scene(instance.rational_segments(), objective, shear, others=corners)
+    check_common_endpoints(scene)
     region = Region(scene, corners)
     # Inside a kernel every L is positive, so only F^+ is ever a bisector there.
     curves = components(scene, signs=(1,) if domain == "kernel" else (1, -1))

@@ -1,8 +1,9 @@
-"""Where the reference builder's nodes and edges lie: exact boxes, polylines, ranges of cot θ."""
+"""Where the reference builder's nodes and edges lie: boxes, polylines, directions at infinity."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from fractions import Fraction
 from functools import cached_property
 
@@ -12,11 +13,18 @@ from numpy.typing import NDArray
 
 from harness.diagram.algebra import FIRST_PRECISION, NotGeneric, Point
 from harness.diagram.arcs import Arc
-from harness.diagram.fibres import intersect, rational_between
+from harness.diagram.cotangents import cotangent_values
+from harness.diagram.fibres import rational_between
 from harness.diagram.planar_map import RationalPoint, Window
 from harness.diagram.scene import Scene
 
 FAR = 2**60
+SAME = 2.0**-50
+"""Points closer than this part of their size are the same for a polyline."""
+DEEPEST = 60
+"""How often a piece of a polyline is halved at most: its points go from the finest doubles on."""
+
+Position = tuple[float, float]
 
 
 class ExactPlace:
@@ -78,96 +86,39 @@ class ExactCourse:
         """See :meth:`harness.diagram.planar_map.Edge.polyline`.
 
         All points lie on the edge exactly, up to rounding.  A piece is bisected until its middle
-        is within ``tolerance`` of its chord; that the rest of the piece is, too, is not proved.
+        is within ``tolerance`` of its chord (or as near as doubles can tell); that the rest of the
+        piece is, too, is not proved.
         """
         if not tolerance > 0:
             raise ValueError("the tolerance must be positive")
         points: list[tuple[float, float]] = []
-        limit = _limit(self.scene, window)
+        view = window or default_window(self.scene.segments)
         for arc, forward in self.chain:
-            piece = _arc_polyline(self.scene, arc, tolerance, limit)
+            piece = _arc_polyline(self.scene, arc, tolerance, view)
             piece = piece if forward else piece[::-1]
             points += piece[1:] if points else piece
         return np.array(points)
 
     def cotangent_range(self) -> tuple[float, float]:
-        """See :attr:`harness.diagram.planar_map.Edge.cotangent_range`.
-
-        cot θ is monotone between the points of the edge where the level circles of the two
-        segments are tangent, that is, where the gradients of their cotangents are parallel.
-        """
+        """See :attr:`harness.diagram.planar_map.Edge.cotangent_range`."""
         values = [
             value
             for arc, _ in self.chain
-            for value in [*_end_values(self.scene, arc, self.segments), *self._tangencies(arc)]
+            for value in cotangent_values(self.scene, arc, self.segments)
         ]
         return min(values), max(values)
 
-    def _tangencies(self, arc: Arc) -> list[float]:
-        curve = arc.slabs.polynomial
-        jacobian = self.scene.jacobian(*self.segments)
-        if curve.mpoly.gcd(jacobian.mpoly).total_degree() > 0:
-            return []  # cot θ is constant: the curve is a circle through all four endpoints
-        return [
-            cotangent_float(self.scene, self.segments, p)
-            for p in intersect(curve, jacobian)
-            if arc.contains(p)
-        ]
+
+def default_window(segments: Sequence[tuple[RationalPoint, RationalPoint]]) -> Window:
+    """Three times the box of the segments."""
+    xs = [float(p[0]) for segment in segments for p in segment]
+    ys = [float(p[1]) for segment in segments for p in segment]
+    reach = max(max(xs) - min(xs), max(ys) - min(ys))
+    return min(xs) - reach, min(ys) - reach, max(xs) + reach, max(ys) + reach
 
 
-def cotangent_float(scene: Scene, segments: tuple[int, int], p: Point) -> float:
-    """cot θ of the two tied segments at p as a double; ±inf where θ is 0 or π.
-
-    p must not be an endpoint of both.
-    """
-    for k in segments:
-        level = scene.level(k, p)
-        if level:
-            return level * math.inf
-        if level == 0:
-            u, v = p.balls(4 * FIRST_PRECISION)
-            with ctx.workprec(4 * FIRST_PRECISION):
-                return float(scene.cotangent(k, u, v).mid())
-    raise ArithmeticError("the visual angles have no value at a common endpoint")
-
-
-def _end_values(scene: Scene, arc: Arc, segments: tuple[int, int]) -> list[float]:
-    """The limits of cot θ at both ends of an arc."""
-    values = []
-    for end in (arc.start, arc.end):
-        if end is None:
-            values.append(math.inf)
-        elif all(scene.level(k, end) is None for k in segments):
-            values.append(_limit_at_endpoint(scene, arc, end, segments[0]))
-        else:
-            values.append(cotangent_float(scene, segments, end))
-    return values
-
-
-def _limit_at_endpoint(scene: Scene, arc: Arc, end: Point, segment: int) -> float:
-    """The limit of cot θ along an arc into an endpoint of the segment.
-
-    There θ depends on the direction alone: it is the angle between the segment and the direction
-    opposite to the one from which its endpoint is approached; that direction is taken from a point
-    of the arc 2^-60 of its length away.
-    """
-    low, high = _open_range(arc, fmpq(FAR) if arc.start is None or arc.end is None else fmpq(0))
-    step = (high - low) / FAR
-    near = _at(arc, low + step if end is arc.start else high - step)
-    bits = 4 * FIRST_PRECISION
-    with ctx.workprec(bits):
-        u, v = near.balls(bits)
-        return float(scene.cotangent(segment, u, v).mid())
-
-
-def _limit(scene: Scene, window: Window | None) -> fmpq:
+def _limit(scene: Scene, window: Window) -> fmpq:
     """A bound that |u| does not exceed inside the window."""
-    if window is None:
-        xs = [float(p[0]) for segment in scene.segments for p in segment]
-        ys = [float(p[1]) for segment in scene.segments for p in segment]
-        width, height = max(xs) - min(xs), max(ys) - min(ys)
-        reach = max(width, height)
-        window = (min(xs) - reach, min(ys) - reach, max(xs) + reach, max(ys) + reach)
     x = max(abs(Fraction(window[0])), abs(Fraction(window[2])))
     y = max(abs(Fraction(window[1])), abs(Fraction(window[3])))
     bound = (x + scene.shear * y) * scene.ratio
@@ -197,27 +148,41 @@ def _at(arc: Arc, u: fmpq) -> Point:
             u += fmpq(1, FAR)
 
 
-def _arc_polyline(
-    scene: Scene, arc: Arc, tolerance: float, limit: fmpq
-) -> list[tuple[float, float]]:
-    low, high = _open_range(arc, limit)
+def _between(low: fmpq, high: fmpq, s: float) -> fmpq:
+    """A short rational near low + (high − low)·sin²(πs/2), crowded towards both ends.
 
-    def point(s: float) -> tuple[float, float]:
+    It is off by less than 2^-20 of its distance from the nearer end: fibres over short rationals
+    are found quickly.
+    """
+    end, width = (low, high - low) if s <= 0.5 else (high, low - high)
+    part = Fraction(math.sin(math.pi * min(s, 1 - s) / 2) ** 2)
+    step = width * fmpq(part.numerator, part.denominator)
+    shift = 20 + int(step.q).bit_length() - int(abs(step.p)).bit_length()
+    grain = fmpq(1, 2**shift) if shift >= 0 else fmpq(2**-shift)
+    return fmpq(((end + step) / grain).floor()) * grain
+
+
+def _arc_polyline(scene: Scene, arc: Arc, tolerance: float, window: Window) -> list[Position]:
+    low, high = _open_range(arc, _limit(scene, window))
+    size = max(window[2] - window[0], window[3] - window[1])
+
+    def point(s: float) -> Position:
         """s ∈ [0, 1], crowded towards the ends, where the arc may be vertical."""
         if s == 0 and arc.start is not None:
             return scene.floats(arc.start)
         if s == 1 and arc.end is not None:
             return scene.floats(arc.end)
-        weight = Fraction((1 - math.cos(math.pi * s)) / 2)
-        u = low + (high - low) * fmpq(weight.numerator, weight.denominator)
-        return scene.floats(_at(arc, u))
+        return scene.floats(_at(arc, _between(low, high, s) if 0 < s < 1 else (low, high)[int(s)]))
 
-    def refine(
-        a: float, p: tuple[float, float], b: float, q: tuple[float, float], depth: int
-    ) -> list[tuple[float, float]]:
+    def is_straight(p: Position, m: Position, q: Position) -> bool:
+        # What is far away is seen from the window, and so may be off by more.
+        allowed = tolerance * (1 + _distance_to_box(p, q, window) / size)
+        return _distance_to_chord(m, p, q) <= max(allowed, SAME * (abs(m[0]) + abs(m[1])))
+
+    def refine(a: float, p: Position, b: float, q: Position, depth: int) -> list[Position]:
         middle = (a + b) / 2
         m = point(middle)
-        if (depth >= 2 and _distance_to_chord(m, p, q) <= tolerance) or depth == 24:
+        if (depth >= 2 and is_straight(p, m, q)) or depth == DEEPEST:
             return [m, q]
         left = refine(a, p, middle, m, depth + 1)
         return left + refine(middle, m, b, q, depth + 1)
@@ -226,9 +191,14 @@ def _arc_polyline(
     return [start, *refine(0.0, start, 1.0, end, 0)]
 
 
-def _distance_to_chord(
-    m: tuple[float, float], p: tuple[float, float], q: tuple[float, float]
-) -> float:
+def _distance_to_box(p: Position, q: Position, box: Window) -> float:
+    """How far the box of p and q is from another box."""
+    dx = max(box[0] - max(p[0], q[0]), min(p[0], q[0]) - box[2], 0.0)
+    dy = max(box[1] - max(p[1], q[1]), min(p[1], q[1]) - box[3], 0.0)
+    return math.hypot(dx, dy)
+
+
+def _distance_to_chord(m: Position, p: Position, q: Position) -> float:
     length = math.dist(p, q)
     if length == 0:
         return math.dist(m, p)

@@ -13,13 +13,13 @@ from __future__ import annotations
 import json
 import os
 import re
-import tempfile
 from collections.abc import Mapping
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 from harness.errors import UserError
+from harness.files import replace
 from harness.geometry.coordinates import Kind, Vanished
 from harness.geometry.instance import Instance
 
@@ -39,7 +39,7 @@ def read_instance(path: str | os.PathLike[str]) -> Instance:
     """
     source = os.fspath(path)
     try:
-        text = Path(path).read_text(encoding="utf-8-sig")
+        text = Path(path).read_text(encoding="utf-8")
     except UnicodeDecodeError:
         raise UserError(f"{source}: not a text file (UTF-8)") from None
     except (OSError, ValueError) as error:  # ValueError: a path with a null character
@@ -51,7 +51,11 @@ def read_instance(path: str | os.PathLike[str]) -> Instance:
 
 
 def parse_instance(text: str, source: str | None = None) -> Instance:
-    """The instance that ``text`` describes; ``source`` is only remembered."""
+    """The instance that ``text`` describes; ``source`` is only remembered.
+
+    A byte order mark is no part of it.
+    """
+    text = text.removeprefix("\ufeff")
     word = _WKT_TYPE.match(text)
     if word and word[1].upper() in _WKT_READERS:
         kind, rows = _from_wkt(text[word.end() :], word[1].upper())
@@ -75,27 +79,9 @@ def write_instance(instance: Instance, path: str | os.PathLike[str]) -> None:
     writer = {".wkt": to_wkt, ".geojson": to_geojson}.get(target.suffix.lower(), Instance.to_json)
     text = writer(instance)
     try:
-        if target.exists() and not target.is_file():
-            target.write_text(text, encoding="utf-8")  # a device or pipe must not be replaced
-            return
-        with tempfile.NamedTemporaryFile(
-            "w", encoding="utf-8", dir=target.parent, prefix=f".{target.name}.", delete=False
-        ) as scratch:
-            scratch.write(text)
-        try:
-            os.chmod(scratch.name, 0o666 & ~_umask())
-            os.replace(scratch.name, target)
-        except OSError:
-            os.unlink(scratch.name)
-            raise
+        replace(target, text.encode())
     except OSError as error:
         raise UserError(f"{target}: {error.strerror or error}") from None
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
 
 
 # ---------------------------------------------------------------- JSON

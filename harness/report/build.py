@@ -11,6 +11,7 @@ import pandas as pd
 
 from harness.analysis import GroupGrowth, analyse_group, split
 from harness.errors import UserError
+from harness.files import replace
 from harness.report import summary
 from harness.report.labels import curve_labels
 
@@ -86,7 +87,6 @@ def write(study: StudyGrowth, directory: Path) -> Path:
     The page comes last: when it is there, so is everything it links to.
     """
     from harness.report.page import outputs
-    from harness.study.store import replace
 
     files = outputs(study)
     page = files.pop(REPORT)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import partial
 from typing import Any
 
@@ -17,6 +17,7 @@ from harness.analysis.statistics import RESAMPLES
 from harness.analysis.verdict import LinearClaim
 from harness.report import figures, provenance, summary, tables
 from harness.report.build import REPORT, StudyGrowth
+from harness.report.examples import Example, example
 from harness.report.labels import bracket, number, percent, plain, sizes
 from harness.report.sections import Cell, Download, Section, Table, cell, section
 from harness.report.style import inline, render
@@ -43,12 +44,14 @@ def outputs(study: StudyGrowth) -> dict[str, str]:
         "planted": _download("planted", _planted_table(checks)),
     }
     overviews = list(_overviews(downloads["overview"]))
+    examples = _examples(study)
     files = {figure["path"]: figure["document"] for figure in overviews}
+    files.update({shown.path: shown.document for shown in examples.values() if shown})
     for part in sections:
         files.update({panel.figure_path: panel.document for panel in part.panels})
         files.update({download.path: download.text for download in part.downloads})
     files.update({download.path: download.text for download in downloads.values()})
-    files[REPORT] = _page(study, sections, checks, downloads, overviews)
+    files[REPORT] = _page(study, sections, checks, downloads, overviews, examples)
     return files
 
 
@@ -58,6 +61,7 @@ def _page(
     checks: list[tuple[tuple[Check, ...], list[str]]],
     downloads: dict[str, Download],
     overviews: list[dict[str, str]],
+    examples: Mapping[str, Example | None],
 ) -> str:
     environment = Environment(
         loader=PackageLoader("harness.report"),
@@ -78,7 +82,7 @@ def _page(
             verdicts=_verdict_table(study),
             controls=_control_table(study),
             checks=[_check_view(check, labels) for check, labels in checks],
-            families=list(_families(study, sections)),
+            families=list(_families(study, sections, examples)),
             failures=_failure_table(study),
             downloads=downloads,
             method=_method(),
@@ -207,16 +211,26 @@ def _failure_table(study: StudyGrowth) -> Table:
     return Table("Tasks without a count", head, rows)
 
 
-def _families(study: StudyGrowth, sections: list[Section]) -> Iterator[dict[str, Any]]:
+def _examples(study: StudyGrowth) -> dict[str, Example | None]:
+    """A picture for each family, in the order of the page."""
+    groups: dict[str, list[GroupGrowth]] = {}
+    for analysed in study.groups:
+        groups.setdefault(analysed.group.key.family, []).append(analysed)
+    return {name: example(of_family) for name, of_family in groups.items()}
+
+
+def _families(
+    study: StudyGrowth, sections: list[Section], examples: Mapping[str, Example | None]
+) -> Iterator[dict[str, Any]]:
     from generators import FAMILIES
 
-    names = list(dict.fromkeys(analysed.group.key.family for analysed in study.groups))
-    for name in names:
+    for name in examples:
         family = FAMILIES.get(name)
         yield {
             "name": name,
             "summary": family.summary if family else "",
             "source": family.source if family else "",
+            "example": examples[name],
             "sections": [
                 part
                 for part, analysed in zip(sections, study.groups, strict=True)

@@ -168,6 +168,7 @@ def _reading(curve: Growth, title: str) -> Reading:
     power = curve.power
     interval = bracket(power.low, power.high)
     text = f"exponent {number(power.exponent)} {interval}".strip()
+    text += _why_another(curve)
     if power.reason:
         text += f" ({power.reason})"
     return Reading(
@@ -176,6 +177,21 @@ def _reading(curve: Growth, title: str) -> Reading:
         curve.verdict.linear_claim,
         curve.verdict.sentence,
         text,
+    )
+
+
+def _why_another(curve: Growth) -> str:
+    """Why a pure power has another exponent than the one model that survived, if it has."""
+    known = {"1": 0.0, "n": 1.0, "n^2": 2.0}
+    kept, exponent = curve.verdict.kept, curve.power.exponent
+    if len(kept) != 1 or kept[0].name not in known or exponent is None:
+        return ""
+    power = known[kept[0].name]
+    if abs(exponent - power) < 0.05:
+        return ""
+    return (
+        f", not {power:g}: a pure power has no lower-order term, "
+        f"and that of {kept[0].symbol} still counts at these sizes"
     )
 
 

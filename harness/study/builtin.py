@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import difflib
 import os
 from pathlib import Path
 
-from harness.errors import UserError
+from harness.errors import UserError, suggestion
 from harness.study.study_file import Study, read_study
 
 _FOLDER = Path(__file__).parent / "builtin"
@@ -29,6 +28,5 @@ def find_study(name: str) -> Study:
     known = [file.stem for file in sorted(_FOLDER.glob("*.toml"))]
     if name in known:
         return read_study(_FOLDER / f"{name}.toml")
-    close = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
-    hint = f"did you mean {close[0]!r}?" if close else f"built-in are {', '.join(known)}"
+    hint = suggestion(name, known) or f"built-in are {', '.join(known)}"
     raise UserError(f"no file and no built-in study is called {name!r}; {hint}")

@@ -22,8 +22,9 @@ import psutil
 
 import harness
 from harness.errors import UserError
+from harness.files import replace
+from harness.study.checks import check_manifest
 from harness.study.schema import SCHEMA, migrate_manifest
-from harness.study.store import replace
 from harness.study.task import SEED_RULE
 
 if TYPE_CHECKING:
@@ -58,12 +59,14 @@ def read_manifest(directory: Path) -> Manifest | None:
     if not path.exists():
         return None
     try:
-        manifest = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
+        manifest = json.loads(path.read_text(encoding="utf-8-sig"))
+    except (OSError, ValueError, RecursionError) as error:
         raise UserError(f"{path}: cannot be read: {error}") from None
     if not isinstance(manifest, dict):
         raise UserError(f"{path}: not a manifest")
-    return migrate_manifest(manifest, str(path))
+    manifest = migrate_manifest(manifest, str(path))
+    check_manifest(manifest, str(path))
+    return manifest
 
 
 def write_manifest(directory: Path, manifest: Manifest) -> None:

@@ -23,6 +23,7 @@ from pathlib import Path
 from typing import Literal
 
 from harness.errors import UserError
+from harness.files import replace
 from harness.study.engines import Results, check_dask, run_dask, run_local
 from harness.study.interrupt import interruptible
 from harness.study.isolate import Work
@@ -32,7 +33,7 @@ from harness.study.outcome import Outcome, row_of
 from harness.study.processors import default_jobs
 from harness.study.progress import Progress
 from harness.study.schema import Record
-from harness.study.store import ASIDE, ROWS, RowFile, read_rows, replace, set_aside
+from harness.study.store import ASIDE, ROWS, RowFile, read_rows, set_aside
 from harness.study.study_file import Study
 from harness.study.task import Task
 from harness.study.worker import execute

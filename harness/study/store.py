@@ -11,12 +11,14 @@ import csv
 import io
 import os
 import shutil
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Self
 
 from harness.errors import UserError
+from harness.files import replace
+from harness.study.checks import check_row
 from harness.study.outcome import COLUMNS
 from harness.study.schema import Record, migrate_row
 
@@ -32,7 +34,7 @@ def read_rows(path: Path) -> list[Record]:
     """
     if not path.exists():
         return []
-    lines = csv.reader(io.StringIO(_whole_lines(path).decode("utf-8", errors="replace")))
+    lines = _cells(path)
     header = next(lines, list(COLUMNS))
     rows = []
     for number, cells in enumerate(lines, start=2):
@@ -43,8 +45,18 @@ def read_rows(path: Path) -> list[Record]:
         missing = [column for column in COLUMNS if column not in record]
         if missing:
             raise UserError(f"{where}: no column {missing[0]!r}")
+        check_row(record, where)
         rows.append({column: record[column] for column in COLUMNS})
     return rows
+
+
+def _cells(path: Path) -> Iterator[list[str]]:
+    """The cells of every whole line; a spreadsheet's byte order mark is no part of them."""
+    lines = csv.reader(io.StringIO(_whole_lines(path).decode("utf-8-sig", errors="replace")))
+    try:
+        yield from lines
+    except csv.Error as error:
+        raise UserError(f"{path} line {lines.line_num}: not CSV: {error}") from None
 
 
 def _whole_lines(path: Path) -> bytes:
@@ -121,13 +133,3 @@ def replace_rows(path: Path, rows: Iterable[Record]) -> None:
     """Write a rows file anew, in one step."""
     header = dict(zip(COLUMNS, COLUMNS, strict=True))
     replace(path, as_lines([header, *rows]))
-
-
-def replace(path: Path, content: bytes) -> None:
-    """Write a file in one step: a reader, or a crash, sees the old or the new content."""
-    temporary = path.with_name(path.name + ".tmp")
-    with open(temporary, "wb") as file:
-        file.write(content)
-        file.flush()
-        os.fsync(file.fileno())
-    os.replace(temporary, path)

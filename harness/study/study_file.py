@@ -34,8 +34,8 @@ from typing import Any
 
 from generators import FAMILIES, Family, GeneratorError
 from harness.diagram import BUILDERS
-from harness.diagram.counts import DOMAINS, OBJECTIVES, Domain
-from harness.errors import UserError
+from harness.diagram.counts import DOMAINS, OBJECTIVES, default_domain
+from harness.errors import UserError, shown
 from harness.study.limits import Limits
 from harness.study.task import Scalar, Task, seed_of
 from harness.study.values import Table, choose
@@ -44,6 +44,8 @@ DEFAULT_TIME_LIMIT = 300.0
 DEFAULT_MEMORY_LIMIT = 2048
 LEAST_MEMORY_LIMIT = 256
 """MiB; Python and the libraries alone take about 150."""
+MOST_SECONDS, MOST_MEMORY_LIMIT = 366 * 86_400, 2**30
+"""Beyond any task and any machine; clocks and the system's limits still take such numbers."""
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]*")
 
@@ -71,6 +73,7 @@ def read_study(path: Path) -> Study:
         raise UserError(f"{path}: {error.strerror}") from None
     except UnicodeDecodeError:
         raise UserError(f"{path}: not UTF-8") from None
+    text = text.removeprefix("\ufeff")  # an editor's byte order mark
     return parse_study(text, str(path))
 
 
@@ -78,17 +81,19 @@ def parse_study(text: str, source: str) -> Study:
     """The study in ``text``; ``source`` names it in errors.  Raises UserError."""
     try:
         top = Table(tomllib.loads(text), source)
-    except tomllib.TOMLDecodeError as error:
+    except (ValueError, RecursionError) as error:  # numbers of too many digits are ValueErrors
         raise UserError(f"{source}: not TOML: {error}") from None
     name = top.text("name")
     if not _NAME.fullmatch(name):
-        raise top.error("name", f"{name!r} must be letters, digits, '.', '_' and '-'")
+        raise top.error("name", f"{shown(name)} must be letters, digits, '.', '_' and '-'")
     seconds = top.number("time_limit", DEFAULT_TIME_LIMIT)
     mib = top.integer("memory_limit", DEFAULT_MEMORY_LIMIT)
-    if not (0 < seconds < math.inf):
-        raise top.error("time_limit", f"{seconds:g} must be a positive number of seconds")
-    if mib < LEAST_MEMORY_LIMIT:
-        raise top.error("memory_limit", f"{mib} must be at least {LEAST_MEMORY_LIMIT} MiB")
+    if not 0 < seconds <= MOST_SECONDS:
+        reason = f"must be a positive number of seconds, at most {MOST_SECONDS} (a year)"
+        raise top.error("time_limit", f"{seconds:g} {reason}")
+    if not LEAST_MEMORY_LIMIT <= mib <= MOST_MEMORY_LIMIT:
+        reason = f"must be at least {LEAST_MEMORY_LIMIT} and at most {MOST_MEMORY_LIMIT} MiB"
+        raise top.error("memory_limit", f"{shown(mib)} {reason}")
     description = top.text("description", "")
     base_seed = top.integer("base_seed", 0)
     sweeps = top.tables("sweep")
@@ -100,6 +105,8 @@ def parse_study(text: str, source: str) -> Study:
 
 #: More replicates or sizes than this in one sweep are a slip of the pen.
 MOST = 100_000
+#: More segments than this no machine holds.
+MOST_SEGMENTS = 10**12
 
 
 def _tasks(sweep: Table, base_seed: int) -> Iterator[Task]:
@@ -108,12 +115,11 @@ def _tasks(sweep: Table, base_seed: int) -> Iterator[Task]:
     sizes = _sizes(sweep)
     replicates = sweep.integer("replicates", 1)
     if replicates < 1:
-        raise sweep.error("replicates", f"{replicates} must be at least 1")
+        raise sweep.error("replicates", f"{shown(replicates)} must be at least 1")
     if replicates > MOST:
-        raise sweep.error("replicates", f"{replicates} is more than {MOST}")
+        raise sweep.error("replicates", f"{shown(replicates)} is more than {MOST}")
     combinations = list(_combinations(sweep.table("params")))
-    default_domain: Domain = "kernel" if family.kind == "polygon" else "plane"
-    domains = sweep.choices("domain", default_domain, DOMAINS)
+    domains = sweep.choices("domain", default_domain(family.kind), DOMAINS)
     objectives = sweep.choices("objective", "smallest", OBJECTIVES)
     builders = sweep.choices("builder", BUILDERS[0], BUILDERS)
     sweep.finish()
@@ -163,13 +169,18 @@ def _sizes(sweep: Table) -> list[int]:
         sizes = value if isinstance(value, list) else [value]
         if not sizes or any(type(n) is not int for n in sizes):
             raise sweep.error("n", "must be an integer, a list of integers, or a range")
+        if max(sizes) > MOST_SEGMENTS:
+            raise sweep.error("n", f"{shown(max(sizes))} is more than {MOST_SEGMENTS}")
         return list(dict.fromkeys(sizes))
     span = Table(value, f"{sweep.where}: n")
     first, last = span.integer("from"), span.integer("to")
     factor = span.number("factor", 2.0)
     span.finish()
     if not 1 <= first <= last:
-        raise span.error("from", f"{first} must be at least 1 and at most 'to', {last}")
+        reason = f"must be at least 1 and at most 'to', {shown(last)}"
+        raise span.error("from", f"{shown(first)} {reason}")
+    if last > MOST_SEGMENTS:
+        raise span.error("to", f"{shown(last)} is more than {MOST_SEGMENTS}")
     if not 1.0 < factor < math.inf:
         raise span.error("factor", f"{factor:g} must be greater than 1")
     steps = math.floor(math.log(last / first) / math.log(factor) + 1e-9)

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, TypeVar
 
-from harness.errors import UserError
+from harness.errors import UserError, shown, suggestion
 from harness.study.task import Scalar
 
 _Choice = TypeVar("_Choice", bound=str)
@@ -47,35 +46,39 @@ class Table:
         for key in self._values:
             if key not in self._known:
                 hint = suggestion(key, self._known)
-                raise UserError(f"{self.where}: unknown key {key!r}{hint}")
+                tail = f" ({hint})" if hint else ""
+                raise UserError(f"{self.where}: unknown key {shown(key)}{tail}")
 
     def text(self, key: str, default: Any = _REQUIRED) -> str:
         """A string."""
         value = self.take(key, default)
         if not isinstance(value, str):
-            raise self.error(key, f"{value!r} must be a string")
+            raise self.error(key, f"{shown(value)} must be a string")
         return value
 
     def integer(self, key: str, default: Any = _REQUIRED) -> int:
         """An integer (true and false are not)."""
         value = self.take(key, default)
         if type(value) is not int:
-            raise self.error(key, f"{value!r} must be an integer")
+            raise self.error(key, f"{shown(value)} must be an integer")
         return value
 
     def number(self, key: str, default: Any = _REQUIRED) -> float:
         """An integer or a float."""
         value = self.take(key, default)
         if type(value) not in (int, float):
-            raise self.error(key, f"{value!r} must be a number")
-        return float(value)
+            raise self.error(key, f"{shown(value)} must be a number")
+        try:
+            return float(value)
+        except OverflowError:
+            raise self.error(key, f"{shown(value)} is too large") from None
 
     def scalars(self, key: str) -> list[Scalar]:
         """One value or a non-empty list of values."""
         value = self.take(key)
         values = value if isinstance(value, list) else [value]
         if not values or any(type(item) not in (int, float, str) for item in values):
-            raise self.error(key, f"{value!r} must be a number, a string, or a list of these")
+            raise self.error(key, f"{shown(value)} must be a number, a string, or a list of these")
         return values
 
     def choices(self, key: str, default: _Choice, allowed: Iterable[_Choice]) -> list[_Choice]:
@@ -84,13 +87,16 @@ class Table:
         values = value if isinstance(value, list) else [value]
         if not values:
             raise self.error(key, "the list is empty")
-        return [choose(self, key, item, allowed) for item in dict.fromkeys(map(str, values))]
+        for item in values:
+            if not isinstance(item, str):
+                raise self.error(key, f"{shown(item)} must be a string or a list of strings")
+        return [choose(self, key, item, allowed) for item in dict.fromkeys(values)]
 
     def table(self, key: str) -> Table:
         """A table, empty if it is not there."""
         value = self.take(key, {})
         if not isinstance(value, dict):
-            raise self.error(key, f"{value!r} must be a table")
+            raise self.error(key, f"{shown(value)} must be a table")
         return Table(value, f"{self.where}: {key}")
 
     def tables(self, key: str) -> list[Table]:
@@ -109,11 +115,6 @@ def choose(table: Table, key: str, given: str, allowed: Iterable[_Choice]) -> _C
     for word in words:
         if word == given:
             return word
-    hint = suggestion(given, words) or f"; it is one of {', '.join(words)}"
-    raise table.error(key, f"unknown {key} {given!r}{hint}")
-
-
-def suggestion(given: str, known: Iterable[str]) -> str:
-    """A hint to put after an unknown word, or nothing."""
-    close = difflib.get_close_matches(given, list(known), n=1, cutoff=0.5)
-    return f" (did you mean {close[0]!r}?)" if close else ""
+    hint = suggestion(given, words)
+    tail = f" ({hint})" if hint else f"; it is one of {', '.join(words)}"
+    raise table.error(key, f"unknown {key} {shown(given)}{tail}")

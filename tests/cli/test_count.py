@@ -52,7 +52,7 @@ def test_known_squares(capsys):
 
 
 def test_standard_input(monkeypatch, capsys):
-    monkeypatch.setattr("sys.stdin", io.StringIO(PAIR))
+    monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(PAIR.encode())))
     assert main(["count", "-", "--json"]) == 0
     (record,) = records(capsys)
     assert record["file"] == "-"
@@ -61,7 +61,7 @@ def test_standard_input(monkeypatch, capsys):
 
 @pytest.mark.parametrize("text", ["", "[1", BOW_TIE])
 def test_bad_standard_input_is_named(text, monkeypatch, capsys):
-    monkeypatch.setattr("sys.stdin", io.StringIO(text))
+    monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(text.encode())))
     assert main(["count", "-"]) == 1
     told = capsys.readouterr()
     assert told.err.startswith("avd: standard input: ")

@@ -31,12 +31,14 @@ def size_of(instance: Instance) -> float:
     return float(np.ptp(instance.segments.reshape(-1, 2), axis=0).max())
 
 
-@pytest.fixture(scope="module", params=["plane", "largest", "kernel", "square"])
+@pytest.fixture(scope="module", params=["plane", "largest", "kernel", "square", "corner"])
 def diagram(request: pytest.FixtureRequest) -> PlanarMap:
     if request.param == "kernel":
         return build(polygon((6, 1), (5, 4), (1, 5), (-4, 6), (-6, 0), (-3, -5), (3, -4)))
     if request.param == "square":
         return build(polygon(*SQUARE), "plane")
+    if request.param == "corner":
+        return build(segments(((0, 0), (3, 1)), ((0, 0), (-1, 5))))
     return build(FIVE, objective="largest" if request.param == "largest" else "smallest")
 
 
@@ -176,3 +178,19 @@ def test_cot_is_constant_on_the_circle_through_four_endpoints() -> None:
         assert math.atan2(1, low) == pytest.approx(math.atan2(4, 3)) or math.atan2(
             1, low
         ) == pytest.approx(math.pi - math.atan2(4, 3))
+
+
+def test_edges_that_lead_very_far_away_have_short_polylines() -> None:
+    # Almost parallel sides: nodes 10^16 away, where a tolerance is less than doubles can tell.
+    turns = [math.pi * k / 3 for k in range(6)]
+    diagram = build(polygon(*((3 + math.cos(t), 1 + math.sin(t)) for t in turns)), "plane")
+    assert max(math.hypot(*node.point) for node in diagram.nodes) > 1e15
+    lines = [edge.polyline(1e-4) for edge in diagram.edges]
+    assert max(map(len, lines)) < 2_000
+    for edge, line in zip(diagram.edges, lines, strict=True):
+        corners = diagram.instance.segments[:, 0]
+        from_corners = np.hypot(*np.moveaxis(line[:, None] - corners, -1, 0)).min(axis=1)
+        # In doubles the angles are only known well away from the corners.
+        near = line[(np.hypot(*line.T) < 10) & (from_corners > 1e-6)]
+        angles = [visual_angle(near, diagram.instance.segments[k]) for k in edge.segments]
+        assert angles[0] == pytest.approx(angles[1], abs=1e-7)

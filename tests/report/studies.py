@@ -15,7 +15,7 @@ MANIFEST: dict[str, Any] = {
     "study": "sample",
     "description": "Planted growth, a failure and a control",
     "avd": "0.1.0",
-    "commit": "0123abc",
+    "commit": {"hash": "0123abc", "dirty": False},
     "versions": {"python": "3.12.0", "numpy": "2.1.0"},
     "command": "/home/somebody/.venv/bin/avd study '/home/some body/sample.toml' --jobs 2",
     "limits": {"time": 60.0, "memory_mib": 2048},

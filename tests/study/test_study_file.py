@@ -5,6 +5,8 @@ from __future__ import annotations
 import hashlib
 import itertools
 import json
+import subprocess
+import sys
 import textwrap
 from pathlib import Path
 
@@ -38,6 +40,10 @@ SWEEP = '[[sweep]]\nfamily = "star"\nn = 5\n'
         ('name = "a"\ntime_limit = true\n' + SWEEP, ["s.toml: time_limit", "True", "number"]),
         ('name = "a"\ntime_limit = 0\n' + SWEEP, ["s.toml: time_limit", "positive"]),
         ('name = "a"\ntime_limit = inf\n' + SWEEP, ["s.toml: time_limit", "positive"]),
+        ('name = "a"\ntime_limit = 1e300\n' + SWEEP, ["s.toml: time_limit", "at most", "a year"]),
+        (f'name = "a"\ntime_limit = {10**400}\n' + SWEEP, ["s.toml: time_limit", "too large"]),
+        (f'name = "a"\nbase_seed = {"9" * 5000}\n' + SWEEP, ["s.toml: not TOML"]),
+        (f'name = "a"\nmemory_limit = {10**30}\n' + SWEEP, ["s.toml: memory_limit", "at most"]),
         ('name = "a"\nmemory_limit = 3\n' + SWEEP, ["s.toml: memory_limit", "at least"]),
         ('name = "a"\nmemory_limit = 1e3\n' + SWEEP, ["s.toml: memory_limit", "integer"]),
         ('name = "a"\nbase_seed = "x"\n' + SWEEP, ["s.toml: base_seed", "integer"]),
@@ -77,6 +83,10 @@ def test_mistakes_at_the_top_are_named(text: str, parts: list[str]) -> None:
         ('family = "star"\nn = 5\nparams = {r_min = nan}', ["r_min"]),
         ('family = "star"\nn = 5\ndomain = "kernal"', ["domain", "did you mean 'kernel'"]),
         ('family = "star"\nn = 5\ndomain = []', ["domain", "empty"]),
+        ('family = "star"\nn = 5\ndomain = [1]', ["domain", "1 must be a string or a list"]),
+        ('family = "star"\nn = 5\ndomain = {a = 1}', ["domain", "must be a string or a list"]),
+        ('family = ["star"]\nn = 5', ["family", "['star'] must be a string"]),
+        (f'family = "star"\nn = {{from = 8, to = {10**400}}}', ["n: to", "more than"]),
         ('family = "star"\nn = 5\nobjective = "least"', ["objective", "'least'"]),
         ('family = "star"\nn = 5\nbuilder = "referense"', ["builder", "did you mean 'reference'"]),
         ('family = "grid"\nn = 4\ndomain = "kernel"', ["domain", "grid", "plane"]),
@@ -87,6 +97,50 @@ def test_mistakes_in_a_sweep_name_file_and_table(sweep: str, parts: list[str]) -
     with pytest.raises(UserError) as error:
         parse_study(text, "s.toml")
     assert all(part in str(error.value) for part in ["s.toml: sweep 2", *parts]), str(error.value)
+
+
+NUMBERS = ["1", "-1", "1.5", "1e300", "inf", "nan", "9" * 400]
+OTHERS = ["true", "''", "'x'", "[]", "[1]", "['x', 1]", "[[1]]", "{}", "1979-05-27", "'\\u0000'"]
+VALUES = st.sampled_from([*NUMBERS, *OTHERS, "{a = 1}", "{from = 4, to = 6, factor = 1e-9}"])
+
+
+@given(st.sampled_from(["time_limit", "memory_limit", "base_seed", "name", "description"]), VALUES)
+def test_any_value_at_the_top_is_taken_or_refused_in_a_line(key: str, value: str) -> None:
+    table = {"name": "'a'", key: value}
+    read_or_refused("\n".join(f"{key} = {value}" for key, value in table.items()) + "\n" + SWEEP)
+
+
+@given(
+    st.sampled_from(["family", "n", "replicates", "params", "domain", "objective", "builder"]),
+    VALUES,
+)
+def test_any_value_in_a_sweep_is_taken_or_refused_in_a_line(key: str, value: str) -> None:
+    table = {"family": "'star'", "n": "5", key: value}
+    lines = [f"{key} = {value}" for key, value in table.items()]
+    read_or_refused("\n".join(["name = 'a'", "[[sweep]]", *lines]))
+
+
+def read_or_refused(text: str) -> None:
+    try:
+        assert parse_study(text, "s.toml").tasks
+    except UserError as error:
+        if not str(error).startswith("s.toml: ") or len(str(error)) > 300:
+            raise AssertionError from error
+
+
+def test_the_greatest_limits_are_ones_that_the_system_takes() -> None:
+    code = (
+        "from harness.study.limits import Limits, confine, lift_data_limit\n"
+        "from harness.study.study_file import MOST_MEMORY_LIMIT, MOST_SECONDS\n"
+        "confine(Limits(MOST_SECONDS, MOST_MEMORY_LIMIT)); lift_data_limit()"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_a_byte_order_mark_is_no_part_of_a_study_file(tmp_path: Path) -> None:
+    path = tmp_path / "a.toml"
+    path.write_text('\ufeffname = "a"\n' + SWEEP, encoding="utf-8")
+    assert read_study(path).text.startswith("name")
 
 
 def test_an_unreadable_file_is_named(tmp_path: Path) -> None:

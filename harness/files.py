@@ -1,0 +1,44 @@
+"""Writing a file in one step: whoever reads it, or a crash, sees the old content or the new."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from pathlib import Path
+
+
+def replace(path: Path, content: bytes) -> None:
+    """Write ``content`` to ``path``, wholly or not at all; on return it is on the disk.
+
+    A device or a pipe is written to, a symbolic link followed.  Raises OSError naming ``path``.
+    """
+    try:
+        if path.exists() and not path.is_file():
+            path.write_bytes(content)
+        else:
+            _replace(Path(os.path.realpath(path)), content)
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, os.fspath(path)) from None
+
+
+def _replace(target: Path, content: bytes) -> None:
+    descriptor, scratch = tempfile.mkstemp(".tmp", f".{target.name[:50]}.", target.parent)
+    try:
+        with open(descriptor, "wb") as file:
+            file.write(content)
+            file.flush()
+            os.fsync(file.fileno())
+        os.chmod(scratch, _permissions(target))
+        os.replace(scratch, target)
+    except BaseException:
+        os.unlink(scratch)
+        raise
+
+
+def _permissions(target: Path) -> int:
+    """Those of the file that is there, or those of any new file."""
+    if target.exists():
+        return target.stat().st_mode & 0o777
+    mask = os.umask(0)
+    os.umask(mask)
+    return 0o666 & ~mask
