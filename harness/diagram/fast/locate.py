@@ -93,11 +93,30 @@ class FastLocator:
             )
             if order is None:
                 return None
+            if order == 0:
+                order = self._order_beside(point, best, k)
             if order * sense > 0:
                 best, tied = k, False
             elif order == 0:
                 tied = True
         return None if tied else best
+
+    def _order_beside(self, point: RationalPoint, i: int, j: int) -> int:
+        """The sign of θ_i − θ_j beside a point where both are equal.
+
+        It is not zero if the point is on the line of both, where both angles are 0: their ratio is
+        (Q_j/|b_j − a_j|) / (Q_i/|b_i − a_i|) near the line.
+        """
+        lines = self.diagram.prepared.lines
+        if lines[i] < 0 or lines[i] != lines[j]:
+            return 0
+        x, y = point
+        values = []
+        for k in (i, j):
+            (ax, ay), (bx, by) = self.diagram.instance.rational_segment(k)
+            product = (ax - x) * (bx - x) + (ay - y) * (by - y)
+            values.append(product / (abs(bx - ax) or abs(by - ay)))
+        return (values[1] > values[0]) - (values[1] < values[0])
 
     def _reached(self, chart: Chart, winner: int, slots: list[int], start: Weights) -> int:
         """The cell of a point of a leaf, of several cells there of the same segment.

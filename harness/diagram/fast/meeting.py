@@ -52,8 +52,8 @@ class Meeting:
         if not numbers:
             return set()
         members = [k for number in numbers for k in self._members[number]]
-        one = min(owners)
-        other = next(k for k in owners if lines[k] < 0 or lines[k] != lines[one])
+        one = min(owners, key=lambda k: -int(lines[k]))  # on one of the lines in question
+        other = next(k for k in owners if lines[k] != lines[one])
         p = common_point(self.diagram.instance, one, other)
         return {k for k in members if not _covers(self.diagram.instance.rational_segment(k), p)}
 

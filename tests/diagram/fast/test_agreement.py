@@ -40,6 +40,23 @@ def test_builders_agree_on_the_corpus(name: str) -> None:
     assert disagreements(case) == []
 
 
+#: Where builders once disagreed: lines of two segments each through a crossing or along a wall.
+ONCE = {
+    "three lines, one twice": polygon((-2, 3), (1, 3), (-2, 1), (3, 3), (1, -4), (0, -3), (-3, 0)),
+    "a wall on a line of two": polygon((0, 0), (2, 0), (2, 1), (4, 1), (4, 0), (6, 0), (3, 6)),
+    "a plus": polygon(
+        *[(-1, 3), (-1, 1), (-3, 1), (-3, -1), (-1, -1), (-1, -3)],
+        *[(1, -3), (1, -1), (3, -1), (3, 1), (1, 1), (1, 3)],
+    ),
+}
+
+
+@pytest.mark.parametrize("domain", DOMAINS)
+@pytest.mark.parametrize("name", ONCE)
+def test_builders_agree_where_they_did_not(name: str, domain: Domain) -> None:
+    assert disagreements(Case(ONCE[name], domain, "smallest")) == []
+
+
 @settings(max_examples=20)
 @given(
     strategies.instances(max_segments=4, max_vertices=6),
