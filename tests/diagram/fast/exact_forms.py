@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from harness.diagram.fast.examine import NORMS
 from harness.diagram.fast.forms import error_factor, halve
 from harness.diagram.fast.prune import localise
 from harness.diagram.fast.tables import root_table
@@ -202,7 +203,7 @@ class Descent:
 
     def local_norms(self) -> Floats:
         """ML and MQ of both segments over this triangle, (2, 2)."""
-        rows = np.zeros((2, 5))
+        rows = np.zeros((2, NORMS))
         for row, norm, zeros, ends in zip(
             rows, self.norms, self.scene.zeros, self.scene.ends, strict=True
         ):

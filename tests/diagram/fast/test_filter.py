@@ -6,7 +6,6 @@ The theorem is in the docstring of :mod:`harness.diagram.fast.forms`.
 from __future__ import annotations
 
 import itertools
-import math
 import random
 from collections.abc import Iterator
 from dataclasses import replace
@@ -17,10 +16,10 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+from harness.diagram.fast.collinear import collinear_cubic
 from harness.diagram.fast.forms import (
     UNKNOWN,
     U,
-    collinear_quadratic,
     cubic,
     divided_by_distance,
     gradient_controls,
@@ -151,19 +150,20 @@ def test_collinear_segments(scene: Scene, path: list[tuple[int, int]], at: int, 
     end = (start[0] + times * vector[0], start[1] + times * vector[1])
     scene = replace(scene, segments=((a, b), (start, end)), zeros=(0, 0), ends=(0, 0)).scaled()
     here = Descent.into(scene, path)
-    length, other = (
-        math.hypot(*(float(y - x) for x, y in zip(*segment, strict=True)))
-        for segment in scene.segments
-    )
+    # A coordinate of the vectors is as good as their lengths.
+    axis = 0 if abs(vector[0]) >= abs(vector[1]) else 1
+    length, other = (np.array(double_double(abs(q[axis] - p[axis]))) for p, q in scene.segments)
     values, signs = np.empty(10), np.empty(10, np.int64)
     norms = here.local_norms()
     bound = here.bound / (norms[0][1] * norms[1][0] + norms[1][1] * norms[0][0])
-    bound *= norms[0][1] * other + norms[1][1] * length
-    collinear_quadratic(here.rows, 0, 1, length, other, bound, values, signs)
+    bound *= norms[0][1] * other[0] + norms[1][1] * length[0]
+    bound = collinear_cubic(here.rows, 0, 1, length, other, bound, 0, 0, values, signs)
     truth = exact_collinear(*here.exact(), Fraction(1, times))
     for value, claimed, exact in zip(values.tolist(), signs.tolist(), truth, strict=True):
         assert claimed in (sign(exact), UNKNOWN)
-        assert abs(Fraction(value) / Fraction(other) - exact) <= Fraction(bound) / Fraction(other)
+        assert abs(Fraction(value) / Fraction(other[0]) - exact) <= Fraction(bound) / Fraction(
+            other[0]
+        )
 
 
 @settings(max_examples=200)
@@ -182,7 +182,7 @@ def test_equal_vectors_divided_by_the_distance(
     here = Descent.into(Scene(segments, rolled, sense=scene.sense).scaled(), [])
     sj = -1 if turned else 1
     values, _ = coefficients(here, 1, sj)
-    divided_by_distance(values, np.zeros(10, np.int64), k)
+    divided_by_distance(values, k)
     exact = exact_cubic(*here.exact(), 1, sj)
     assert all(exact[c] == 0 for c, index in enumerate(CUBIC) if index[k] == 0)
     for point in itertools.product([Fraction(1, 4), Fraction(1), Fraction(3)], repeat=3):

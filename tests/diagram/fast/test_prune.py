@@ -55,12 +55,16 @@ def kept(prepared: Prepared, corners: Triangle, sense: int) -> set[int]:
     n, scale = prepared.instance.n, prepared.scale
     doubles = np.array(
         [
-            [*double_double(x * (scale if w else 1)), *double_double(y * (scale if w else 1))]
+            [
+                part
+                for value, middle in ((x, prepared.centre[0]), (y, prepared.centre[1]))
+                for part in double_double((value - middle) * scale if w else value)
+            ]
             for x, y, w in corners
         ]
     )
     weights = np.array([float(w) for _, _, w in corners])
-    tables, norms, ids = np.empty((n, 9)), np.empty((n, 5)), np.arange(n)
+    tables, norms, ids = np.empty((n, 9)), np.empty((n, 8)), np.arange(n)
     for k, (a, b) in enumerate(prepared.instance.rational_segments()):
         zeros = ends = 0
         for r, (x, y, w) in enumerate(corners):
