@@ -148,7 +148,8 @@ def _first_colours(views: Views, frame: Frame) -> Pair:
         part: dict[Thing, Hashable] = {}
         for k, node in enumerate(view.diagram.nodes):
             place = next(sources[node.kind == "infinity"])
-            part[NODE, k] = (node.kind, node.degree, node.segments, node.endpoint, place)
+            which = _nearest_endpoint(view.diagram, node.point) if node.endpoint else None
+            part[NODE, k] = (node.kind, node.degree, node.segments, which, place)
         for k, side in enumerate(view.sides):
             if side.is_wall:
                 part[SIDE, k] = ("wall", next(ends), next(ends))
@@ -162,6 +163,13 @@ def _first_colours(views: Views, frame: Frame) -> Pair:
             part[CELL, k] = (cell.segment, cell.bounded, outer, lengths)
         parts.append(part)
     return _named((parts[0], parts[1]))
+
+
+def _nearest_endpoint(diagram: PlanarMap, point: Point) -> Point:
+    """The endpoint of a segment that is nearest to a node at one."""
+    ends = diagram.instance.segments.reshape(-1, 2)
+    x, y = ends[np.hypot(*(ends - point).T).argmin()].tolist()
+    return x, y
 
 
 def _recoloured(view: View, colours: Colours) -> dict[Thing, Hashable]:

@@ -67,11 +67,6 @@ class FastDiagram:
     candidates: dict[int, list[int]]
 
     @cached_property
-    def coarse(self) -> float:
-        """A tolerance that is good enough to see which walk is the outer one."""
-        return float(np.ptp(self.instance.segments.reshape(-1, 2), axis=0).max()) * 1e-3
-
-    @cached_property
     def rows_of_leaves(self) -> Ints:
         """The row in ``leaves.shapes`` of every leaf that is not empty, (leaves,)."""
         rows: Ints = np.cumsum(self.leaves.kinds != EMPTY) - 1

@@ -13,11 +13,12 @@ from harness.diagram.fast.counting import FastDiagram, fast_diagram
 from harness.diagram.fast.courses import ArcCourse
 from harness.diagram.fast.locate import FastLocator
 from harness.diagram.fast.meeting import Meeting
+from harness.diagram.fast.nesting import outer_walks
 from harness.diagram.fast.nodes import KINDS
 from harness.diagram.fast.places import node_point, place_of
 from harness.diagram.fast.walks import Walks
 from harness.diagram.fast.witnesses import witnesses
-from harness.diagram.planar_map import Cell, Edge, Node, PlanarMap, RationalPoint, Walk, Wall
+from harness.diagram.planar_map import Cell, Edge, Node, PlanarMap, RationalPoint, Wall
 from harness.diagram.work import Contradiction
 from harness.geometry.instance import Instance
 
@@ -161,51 +162,14 @@ class _Parts:
         """All cells."""
         diagram = self.diagram
         by_cell = self.walked.by_cell()
+        outer = outer_walks(diagram, by_cell)
         result = []
         for c, segment in enumerate(diagram.cell_owners().tolist()):
-            walks = by_cell.get(c, [])
-            outer, holes = self._split(walks, c in diagram.unbounded)
-            result.append(Cell(segment, c not in diagram.unbounded, outer, holes))
+            walks, first = by_cell.get(c, []), outer[c]
+            holes = tuple(walk for k, walk in enumerate(walks) if k != first)
+            around = None if first is None else walks[first]
+            result.append(Cell(segment, c not in diagram.unbounded, around, holes))
         return tuple(result)
-
-    def _split(self, walks: list[Walk], unbounded: bool) -> tuple[Walk | None, tuple[Walk, ...]]:
-        """The outer walk and the holes.
-
-        The outer walk of an unbounded cell passes through infinity, that of a bounded cell is the
-        only one that runs counter-clockwise.
-        """
-        if unbounded:
-            outer = [walk for walk in walks if self._touches_infinity(walk)]
-            if len(outer) > 1:
-                raise Contradiction("an unbounded cell has two outer walks")
-        elif len(walks) <= 1:
-            outer = walks
-        else:
-            outer = [max(walks, key=self._area)]
-        holes = tuple(walk for walk in walks if walk not in outer)
-        return (outer[0] if outer else None), holes
-
-    def _touches_infinity(self, walk: Walk) -> bool:
-        kind = self.diagram.nodes.kind
-        at_infinity = KINDS.index("infinity")
-        return any(
-            node >= 0 and kind[node] == at_infinity
-            for side in walk
-            for node in self.diagram.edges[side.item, :2].tolist()
-        )
-
-    def _area(self, walk: Walk) -> float:
-        """Twice the signed area inside a walk, roughly."""
-        points = []
-        for side in walk:
-            if side.is_wall:
-                points.append(np.array(self.walked.walls[side.item].ends))
-            else:
-                line = ArcCourse(self.diagram, side.item).polyline(self.diagram.coarse, None)
-                points.append(line if side.forward else line[::-1])
-        p = np.concatenate(points)
-        q = np.roll(p, -1, axis=0)
-        return float((p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]).sum())
 
 
 class _Later:
