@@ -142,6 +142,20 @@ def _is_mixed(m, ids, start, lsign, lines):
 
 
 @compiled
+def _are_cubics(m, ids, far, world):
+    """Whether no factor was divided out of F for any two candidates; see ``all_pairs``."""
+    lines, classes = world[0], world[2]
+    for a in range(m):
+        for b in range(a):
+            i, j = ids[a], ids[b]
+            if lines[i] >= 0 and lines[i] == lines[j]:
+                return False
+            if far != 0 and classes[i] >= 0 and classes[i] == classes[j]:
+                return False
+    return True
+
+
+@compiled
 def examine_finely(norms, ids, start, m, place, scene, desk, source, patience, probe):
     """The same in double-double, for the candidates from ``start`` on.
 
@@ -177,7 +191,8 @@ def examine_finely(norms, ids, start, m, place, scene, desk, source, patience, p
         tables, fine_norms, fine_ids, 0, m, FINE, place, scene, desk
     )
     if kind == QUAD and choice == OPEN:
-        choice = fine_quad_choice(tables, fine_norms, desk[1], desk[2])
+        if _are_cubics(left, fine_ids, place[0], scene[1]):
+            choice = fine_quad_choice(tables, fine_norms, desk[1], desk[2])
     elif (
         kind == FAILED
         and patience > HUB

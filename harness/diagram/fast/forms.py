@@ -16,14 +16,15 @@ are sums of at most three products q·L with weights that add up to one.
 for q, at the corners of the root triangle.  The coordinate differences aw − P are computed in
 double-double arithmetic and rounded once, hence off by at most u relatively (plus 2⁻⁹⁵ of the
 size S of all coordinates, which `magnitude` covers by adding 2⁻⁴²S to each).  So an L_k is off by
-at most 5u·ML, a q_kl by at most 6u·MQ.  Each of d halvings adds one rounding of a number bounded
-by ML (MQ): after d of them the errors are at most (5 + d)u·ML and (6 + d)u·MQ, but for terms in
-u².  A product q·L is then off by (12 + 2d)u·MQ·ML, and a sum of three with the weights 2/3, 1/3
-adds at most 5 more roundings; two such sums are subtracted, one more.  Altogether
+at most 5u·ML, a q_kl by at most 6u·MQ.  A halving adds one rounding of a
+number bounded by ML (MQ) to an entry; the entry q of a new corner is halved twice and adds two.
+After d of them the errors are at most (5 + d)u·ML and (6 + 2d)u·MQ, but for terms in u².  A product
+q·L is then off by (12 + 3d)u·MQ·ML, and a sum of three with the weights 2/3, 1/3 adds at most 5
+more roundings; two such sums are subtracted, one more.  Altogether
 
-    |error of a coefficient| ≤ (18 + 2d) u (MQ_i ML_j + MQ_j ML_i),
+    |error of a coefficient| ≤ (18 + 3d) u (MQ_i ML_j + MQ_j ML_i),
 
-for which :func:`error_factor` returns (24 + 2d)u; the slack covers the terms in u² and underflow.
+for which :func:`error_factor` returns (24 + 3d)u; the slack covers the terms in u² and underflow.
 
 In triangles where that is too much the tables are in double-double, with 18 columns, and the bound
 is that of :mod:`harness.diagram.fast.fine`; the functions of this room take either kind.
@@ -59,7 +60,7 @@ STEPS = np.array([[0, 3, 4], [5, 1, 6], [7, 8, 2], [3, 5, 9], [4, 9, 7], [9, 6, 
 @compiled
 def error_factor(depth):
     """See the room's docstring."""
-    return (24.0 + 2.0 * depth) * U
+    return (24.0 + 3.0 * depth) * U
 
 
 @compiled

@@ -49,10 +49,9 @@ def find_nodes(
     for v, node in arrays.special.items():
         kind[v] = KINDS.index(node.kind)
     degree = np.diff(arrays.out_first)
-    on_walls = {corner for side in roots.walls for corner in side}
     everywhere = []
     for met in corner_nodes(roots, leaves, arrays):
-        if len(met.ports) == 2 and _is_hub(roots, met.corner, on_walls):
+        if len(met.ports) == 2 and _is_hub(roots, met.corner):
             one, two = met.ports  # an edge that passes through, without a node
             arrays.mate[one], arrays.mate[two] = two, one
         else:
@@ -65,7 +64,7 @@ def find_nodes(
         of_port[corner.ports] = n_vertices + k
         corner_kinds.append(
             BOUNDARY
-            if corner.corner in on_walls
+            if corner.corner in roots.on_walls
             else corner_kind(prepared.instance, roots, arrays, corner)
         )
     loose = np.flatnonzero((arrays.inward >= 0) & (arrays.mate < 0) & (of_port < 0))
@@ -83,10 +82,10 @@ def find_nodes(
     )
 
 
-def _is_hub(roots: Roots, corner: int, on_walls: set[int]) -> bool:
+def _is_hub(roots: Roots, corner: int) -> bool:
     """Whether a special corner is neither on the boundary, nor at infinity, nor an endpoint."""
     ends = any(z & 1 for z in roots.corners.incident[corner])
-    return bool(roots.corners.weights[corner]) and corner not in on_walls and not ends
+    return bool(roots.corners.weights[corner]) and corner not in roots.on_walls and not ends
 
 
 def owners_around(arrays: Arrays, corner: CornerNode) -> list[int]:

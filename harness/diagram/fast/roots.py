@@ -21,6 +21,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -90,6 +91,11 @@ class Roots:
     walls: dict[tuple[int, int], int]
     regions: Ints
     region_of: Ints
+
+    @cached_property
+    def on_walls(self) -> frozenset[int]:
+        """The corners on the boundary of the domain."""
+        return frozenset(corner for side in self.walls for corner in side)
 
     def opposite(self) -> Ints:
         """(r, 3): 3·root + side beyond the side opposite to each corner, or WALL or INFINITY.

@@ -114,10 +114,9 @@ class Walks:
         out, first = arrays.out.tolist(), arrays.out_first.tolist()
         for v in range(len(arrays.vertices)):
             self._rotate([self.leaving(h) for h in out[first[v] : first[v + 1]]])
-        if self.diagram.domain == "plane":
-            for node in nodes.corners:
-                if self.diagram.roots.corners.weights[node.corner]:
-                    self._rotate([self.leaving(int(arrays.inward[p])) for p in node.ports])
+        for node in nodes.corners:
+            if node.corner not in self.diagram.roots.on_walls:
+                self._rotate([self.leaving(int(arrays.inward[p])) for p in node.ports])
         for e, row in enumerate(self.diagram.edges.tolist()):
             if row[0] < 0:  # a loop goes on with itself
                 self.before[2 * e + 1], self.before[2 * e] = Side(e, True), Side(e, False)
