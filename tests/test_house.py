@@ -29,6 +29,7 @@ ROOMS = (
     "errors",
     "geometry",
     "diagram",
+    "peak",
     "generators",
     "study",
     "bench",
