@@ -1,7 +1,10 @@
 """Peaks: the points of best visual angle in the kernel of a star-shaped polygon (paper, section 3).
 
-:func:`peaks` takes many small polygons at once.  Everything is imported when first asked for, as
-compiled code takes a moment to load.
+* :func:`peak`: one polygon, by any method and for either objective, with a proof.
+* :func:`peaks`: many small polygons at once, arrays in and arrays out.
+* :func:`meet`: the intersection of discs, by divide and conquer (Lemma 6).
+
+Everything is imported when first asked for, as compiled code takes a moment to load.
 """
 
 from __future__ import annotations
@@ -11,10 +14,21 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from harness.peak.batch import Peaks as Peaks
     from harness.peak.batch import peaks as peaks
+    from harness.peak.discs import Meet as Meet
+    from harness.peak.discs import meet as meet
+    from harness.peak.door import peak as peak
+    from harness.peak.result import Peak as Peak
 
-__all__ = ["Peaks", "peaks"]
+__all__ = ["Meet", "Peak", "Peaks", "meet", "peak", "peaks"]
 
-_HOMES = {"Peaks": "batch", "peaks": "batch"}
+_HOMES = {
+    "Meet": "discs",
+    "Peak": "result",
+    "Peaks": "batch",
+    "meet": "discs",
+    "peak": "door",
+    "peaks": "batch",
+}
 
 
 def __getattr__(name: str) -> Any:

@@ -2,11 +2,12 @@
 
 For multipliers ν of an optimal basis at level c (:mod:`harness.peak.powers`),
 
-    D(c + δ) = min over the plane of Σ ν_i E_i − Σ ν_e L_e = M(c) − s δ − κ δ²,
-    s = Σ ν_i L_i(p),  κ = |Σ ν_i ∇L_i|²/4  (sums over discs),
+    D(c + δ) = min over the plane of Σ ν_i E_i − (1 + δ/c) Σ ν_e L_e = M(c) − s δ − κ δ²,
+    s = Σ ν_i L_i(p),  κ = |Σ ν_i ∇L_i + Σ (ν_e/c) ∇L_e|²/4
 
-is a lower bound of M, so its zero δ > 0 is a lower bound of c* − c: the levels rise and never
-pass c*.  D touches M at c, so the convergence is quadratic (it is Newton's method for M(c) = 0,
+(i: discs, e: walls, on which L_e(p) = 0) is a lower bound of M, so its zero δ > 0 is a lower bound
+of c* − c: the levels rise and never pass c*.  The multipliers of walls grow with the level, as
+the discs tend to half-planes; for c ≤ 0 they are left as they are.  D touches M at c, so the convergence is quadratic (it is Newton's method for M(c) = 0,
 from the safe side; compare Dinkelbach's for fractional programs, which comes from the other).
 
 **Where it starts.**  The visual angles of all n edges add up to 2π in the kernel, so α* ≤ 2π/n.
@@ -62,15 +63,19 @@ def greatest_cap(dx, dy, n):
 
 
 @compiled
-def rise(value, basis, nu, state, ax, ay, dx, dy):
+def rise(c, value, basis, nu, state, ax, ay, dx, dy):
     """The greatest δ with D(c + δ) = 0; infinite if D never falls to zero."""
     s = hx = hy = 0.0
     for k in range(3):
-        if basis[k] != NONE and basis[k] & 1 == 0:
-            i = basis[k] >> 1
-            s += nu[k] * ((ax[i] - state[0]) * dy[i] - (ay[i] - state[1]) * dx[i])
-            hx -= nu[k] * dy[i]
-            hy += nu[k] * dx[i]
+        if basis[k] == NONE:
+            continue
+        i, weight = basis[k] >> 1, nu[k]
+        if basis[k] & 1:
+            weight = weight / c if c > 0.0 else 0.0
+        else:
+            s += weight * ((ax[i] - state[0]) * dy[i] - (ay[i] - state[1]) * dx[i])
+        hx -= weight * dy[i]
+        hy += weight * dx[i]
     kappa = 0.25 * (hx * hx + hy * hy)
     root = np.sqrt(s * s + 4.0 * kappa * value)
     return 2.0 * value / (s + root) if s > 0.0 else (root - s) / (2.0 * kappa)
@@ -85,11 +90,10 @@ def ascend(c, state, basis, nu, row, chosen, ax, ay, dx, dy, m):
     and the point is that of least M.
     """
     for step in range(MOST_STEPS):
-        if settle(c, state, basis, nu, row, chosen, ax, ay, dx, dy, m) < 0:
-            return c, -1
+        settle(c, state, basis, nu, row, chosen, ax, ay, dx, dy, m)
         if not state[2] > 0.0:
             return c, step
-        delta = rise(state[2], basis, nu, state, ax, ay, dx, dy)
+        delta = rise(c, state[2], basis, nu, state, ax, ay, dx, dy)
         if not delta < np.inf:
             return c, -1
         c += delta

@@ -62,36 +62,28 @@ def inside(px, py, ulps_of, basis, ax, ay, dx, dy):
 
 
 @compiled
-def is_shared(corner, basis, n):
-    """Whether both edges of a vertex are in the basis, with their disc or their wall."""
-    before = n - 1 if corner == 0 else corner - 1
-    here = there = False
-    for k in range(3):
-        here = here or basis[k] >> 1 == corner
-        there = there or basis[k] >> 1 == before
-    return here and there
-
-
-@compiled
 def certify(c, start, capped, px, py, basis, nu, x, y, first, n, sense, ax, ay, dx, dy, out):
     """Fill ``out`` = (x, y, lower, upper) near (px, py); the vertex that the point is, or −1.
 
     ``start``: the level at which the ascent began, which bounds the angle from above; ``capped``:
     the vertex whose cap that is (−1: none).  A vertex counts as a point at which its two edges
-    are seen under its cap (the limit along the best direction).
+    are seen under its cap (the limit along the best direction); the basis then becomes these two
+    edges and, if it is seen under less, a third.
     """
     place(px, py, x, y, first, n, sense, ax, ay, dx, dy)
     upper = angle_of(start)
     lower, _ = least_angle(NONE, ax, ay, dx, dy, n)
     out[0], out[1] = px, py
     upper = min(upper, angle_of(cotangent_bound(c, basis, nu, ax, ay, dx, dy, n)))
-    at = NONE
-    for slot in range(4):
-        corner = capped if slot == 3 else basis[slot] >> 1
-        if upper - lower <= WIDTH or corner == NONE:
+    at = least = NONE
+    for slot in range(7):  # the capped vertex, and the ends of the edges of the basis
+        if upper - lower <= WIDTH:
+            break
+        corner = capped if slot == 6 else basis[slot >> 1] >> 1
+        if corner == NONE:
             continue
-        if slot < 3 and not is_shared(corner, basis, n):
-            continue
+        if slot < 6 and slot & 1:
+            corner = corner + 1 if corner + 1 < n else 0
         k = first + (corner if sense > 0 else (n - corner if corner > 0 else 0))
         place(x[k], y[k], x, y, first, n, sense, ax, ay, dx, dy)
         before = n - 1 if corner == 0 else corner - 1
@@ -99,12 +91,17 @@ def certify(c, start, capped, px, py, basis, nu, x, y, first, n, sense, ax, ay, 
             dx[before] * dy[corner] - dy[before] * dx[corner],
             dx[before] * dx[corner] + dy[before] * dy[corner],
         )
-        others, _ = least_angle(corner, ax, ay, dx, dy, n)
-        reached = min(others, 0.5 * (np.pi + turn) - SEEN)
+        others, edge = least_angle(corner, ax, ay, dx, dy, n)
+        own = 0.5 * (np.pi + turn) - SEEN
+        reached = min(others, own)
         upper = min(upper, angle_of(cotangent_bound(c, basis, nu, ax, ay, dx, dy, n)))
         if reached > lower:
             lower, at = reached, corner
+            least = edge if others < own else NONE
             out[0], out[1] = x[k], y[k]
+    if at != NONE:
+        basis[0], basis[1] = 2 * (at - 1 if at > 0 else n - 1), 2 * at
+        basis[2] = 2 * least if least != NONE else NONE
     out[2], out[3] = lower if lower >= 0.0 else np.nan, upper
     return at
 

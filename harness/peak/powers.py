@@ -26,6 +26,8 @@ from harness.geometry.jit import compiled
 
 NONE = -1
 MOST_PIVOTS = 100
+GRANTED = 4.0 * 2.0**-53
+"""What is granted to rounding, as a part of the size of the products."""
 
 
 @compiled
@@ -134,19 +136,20 @@ def best_subset(row, count, needed, chosen, nu):
 def most_violated(c, px, py, value, ax, ay, dx, dy, m):
     """The constraint that (px, py) violates most, walls only if no disc is violated; or −1.
 
-    What rounding may have caused does not count as violated: E is computed with an error below
-    8u(|Q| + |cL| + …), u = 2⁻⁵³, each of its products being of the size of its factors.
+    What rounding may have caused does not count: every product is off by a few u of its size,
+    u = 2⁻⁵³, if the edges are given with relative errors of u from somewhere near the point.
     """
     worst, chosen = 0.0, NONE
     deepest, wall = 0.0, NONE
     for i in range(m):
         ux, uy, wx, wy = ax[i] - px, ay[i] - py, dx[i], dy[i]
-        area = ux * wy - uy * wx
+        left, right = ux * wy, uy * wx
+        area, size = left - right, abs(left) + abs(right)
         q = ux * (ux + wx) + uy * (uy + wy)
         excess = q - c * area - value
-        if excess > worst and excess > 1e-15 * (abs(q) + abs(c * area) + abs(value)):
+        if excess > worst and excess > GRANTED * (abs(q) + abs(c) * size + abs(value)):
             worst, chosen = excess, 2 * i
-        if area < deepest and -area > 1e-15 * (abs(ux * wy) + abs(uy * wx)):
+        if area < deepest and -area > GRANTED * size:
             deepest, wall = area, 2 * i + 1
     return chosen if chosen != NONE else wall
 
@@ -169,8 +172,7 @@ def settle(c, state, basis, nu, row, chosen, ax, ay, dx, dy, m):
 
     ``state``: (x, y) of the point, updated; state[2] receives the value M(c).  ``basis`` (four
     places), ``nu`` (its multipliers), ``row`` (4 × 4) and ``chosen`` are room to work in.  Returns
-    the number of pivots, each of which looks at all m edges; −1 if rounding lets it find no
-    basis.
+    the number of pivots, each of which looks at all m edges.
     """
     count = 0
     for k in range(3):
@@ -197,21 +199,22 @@ def settle(c, state, basis, nu, row, chosen, ax, ay, dx, dy, m):
         put_row(row, count, violated, c, state[0], state[1], ax, ay, dx, dy)
         basis[count] = violated
         raised = take_best(state, basis, nu, row, chosen, count + 1, count)
-        if raised == -np.inf:
-            break
         if not raised > value:  # what is still violated is no more than rounding
-            state[2] = raised
-            return pivots
+            break
         value = raised
     state[2] = value
-    return -1
+    return pivots
 
 
 @compiled
 def take_best(state, basis, nu, row, chosen, count, needed):
-    """Reduce the basis to its best subset, move the point there, return the value."""
+    """Reduce the basis to its best subset, move the point there, return the value.
+
+    If no subset has multipliers ≥ 0 (rounding), the value is −∞ and the last constraint goes.
+    """
     value, x, y = best_subset(row, count, needed, chosen, nu)
     if value == -np.inf:
+        basis[count - 1] = NONE
         return value
     first = basis[chosen[0]]
     second = basis[chosen[1]] if chosen[1] != NONE else NONE
