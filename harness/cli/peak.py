@@ -36,8 +36,8 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument(
         "--method",
         choices=METHODS,
-        help="lp: expected linear time; diagram: all edges and vertices of the diagram; parametric: "
-        "parametric search (default: lp; for min-max diagram, the only one)",
+        help="lp: expected linear time; diagram: all edges and vertices of the diagram; "
+        "parametric: parametric search (default: lp; for min-max diagram, the only one)",
     )
     parser.add_argument(
         "--objective",

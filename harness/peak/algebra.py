@@ -19,13 +19,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import combinations
 from typing import Any
 
-from flint import arb, ctx, fmpq, fmpq_poly, fmpz_poly
+from flint import arb, ctx, fmpq_poly, fmpz_poly
 
 from harness.diagram.roots import real_root_balls
 from harness.geometry.exact import ExactPoint
-from harness.peak.rational import Edge, forms
+from harness.peak.rational import Edge, cap, forms, rational_bounds
 
 BITS = (128, 512, 2048)
 C = fmpq_poly([0, 1])
@@ -33,7 +34,7 @@ C = fmpq_poly([0, 1])
 
 @dataclass(frozen=True)
 class ExactPeak:
-    """The optimal cotangent: the root of an irreducible integer polynomial that lies in an interval.
+    """The optimal cotangent: the root of an irreducible integer polynomial in an interval.
 
     ``polynomial``: coefficients, that of c⁰ first.  ``low``, ``high``: rationals (flint) around
     this root and no other.  ``tied``: all segments seen under exactly the optimal angle (at a
@@ -84,8 +85,6 @@ class Root:
     @cached_property
     def isolated(self) -> tuple[Any, Any]:
         """Rationals around this root and no other."""
-        from harness.peak.rational import rational_bounds
-
         return rational_bounds(self.ball(BITS[0]))
 
 
@@ -203,8 +202,6 @@ def decide(
 
 def _subsets(discs: list[int], with_wall: bool) -> list[list[int]]:
     """The bases within a set of discs, pairs first."""
-    from itertools import combinations
-
     sizes = (2,) if with_wall else (2, 3)
     return [list(subset) for size in sizes for subset in combinations(discs, size)]
 
@@ -239,10 +236,10 @@ def decide_at_vertex(edges: Sequence[Edge], vertex: int) -> tuple[Root, list[int
         return None
     cotangents = {i: q / level for i, (q, level) in others.items()}
     greatest = max(cotangents.values())
-    cap = _cap(edges, *own)
-    order = cap.sign(C - greatest)
+    own_cap = _cap(edges, *own)
+    order = own_cap.sign(C - greatest)
     if order >= 0:
-        return cap, sorted(
+        return own_cap, sorted(
             [*own, *(i for i, c in cotangents.items() if order == 0 and c == greatest)]
         )
     linear = fmpq_poly([-greatest, 1]).numer()
@@ -257,11 +254,8 @@ def _cap(edges: Sequence[Edge], before: int, after: int) -> Root:
     (cx, cy), (dx, dy) = edges[after]
     ux, uy, vx, vy = bx - ax, by - ay, dx - cx, dy - cy
     s, k = ux * vy - uy * vx, ux * vx + uy * vy
-    with ctx.workprec(BITS[0]):
-        value = -(arb.atan2(arb(s), arb(k)) / 2).tan()
-    (root,) = [
-        root for root in roots_between(fmpq_poly([-s, -2 * k, s]), value.lower(), value.upper())
-    ]
+    low, high = cap(edges, after, BITS[0])
+    (root,) = roots_between(fmpq_poly([-s, -2 * k, s]), low, high)
     return root
 
 
@@ -273,8 +267,6 @@ def _towards(edge: Edge, p: ExactPoint, c: Any) -> ExactPoint:
 
 def _surround(vectors: Sequence[ExactPoint]) -> bool:
     """Whether the origin is in the convex hull of the vectors."""
-    from itertools import combinations
-
     for a, b in combinations(vectors, 2):
         if a[0] * b[1] == a[1] * b[0] and a[0] * b[0] + a[1] * b[1] <= 0:
             return True

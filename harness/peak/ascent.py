@@ -7,8 +7,9 @@ For multipliers ν of an optimal basis at level c (:mod:`harness.peak.powers`),
 
 (i: discs, e: walls, on which L_e(p) = 0) is a lower bound of M, so its zero δ > 0 is a lower bound
 of c* − c: the levels rise and never pass c*.  The multipliers of walls grow with the level, as
-the discs tend to half-planes; for c ≤ 0 they are left as they are.  D touches M at c, so the convergence is quadratic (it is Newton's method for M(c) = 0,
-from the safe side; compare Dinkelbach's for fractional programs, which comes from the other).
+the discs tend to half-planes; for c ≤ 0 they are left as they are.  D touches M at c, so the
+convergence is quadratic (it is Newton's method for M(c) = 0, from the safe side; Dinkelbach's for
+fractional programs comes from the other).
 
 **Where it starts.**  The visual angles of all n edges add up to 2π in the kernel, so α* ≤ 2π/n.
 And near a vertex of interior angle γ its two edges are seen under π − ψ and π − γ + ψ, where ψ is

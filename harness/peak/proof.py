@@ -13,7 +13,6 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from flint import ctx
 
 from harness.geometry.exact import ExactPoint, fraction, point
@@ -110,7 +109,7 @@ def _best_of(
     capped: int,
     best: _Found | None,
 ) -> _Found | None:
-    """The better of ``best`` and what can be proven at a point or at an end of an edge of its basis."""
+    """The better of ``best`` and what is proven at a point, or an end of an edge of its basis."""
     ends = {(int(k) >> 1) + e for k in end.constraints if k != NONE for e in (0, 1)}
     corners = {i % polygon.n for i in ends} | ({capped} - {NONE})
     for corner in (NONE, *sorted(corners)):
@@ -119,7 +118,7 @@ def _best_of(
         p = origin if corner == NONE else polygon.exact_vertex(corner)
         edges = polygon.edges_from(p)
         lower, edge = least_angle(corner, *edges, polygon.n)
-        constraints = end.constraints
+        constraints: Sequence[int] = end.constraints.tolist()
         if corner != NONE:
             own = angle_of(_cap_level(edges, corner)) - SEEN
             constraints = _at_vertex(polygon.n, corner, edge if lower < own else None)

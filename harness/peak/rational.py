@@ -197,9 +197,10 @@ def cap(edges: Sequence[Edge], vertex: int, bits: int) -> tuple[Any, Any]:
     (ax, ay), (bx, by) = edges[vertex - 1]
     (cx, cy), (dx, dy) = edges[vertex]
     ux, uy, vx, vy = bx - ax, by - ay, dx - cx, dy - cy
+    s, k = ux * vy - uy * vx, ux * vx + uy * vy
     with ctx.workprec(2 * bits + 64):
-        turn = arb.atan2(arb(ux * vy - uy * vx), arb(ux * vx + uy * vy))
-        return rational_bounds(-(turn / 2).tan())
+        size = arb(s * s + k * k).sqrt()  # of the two forms the one that does not cancel
+        return rational_bounds(-s / (size + k) if k > 0 else (arb(k) - size) / s)
 
 
 def rational_start(edges: Sequence[Edge], capped: int, bits: int) -> Any:

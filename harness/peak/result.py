@@ -24,9 +24,10 @@ class Peak:
 
     ``x``, ``y``: the point as doubles; ``point``: the exact point that the enclosure speaks of.
     ``lower`` ≤ optimal angle ≤ ``upper`` (radians, proven, at most 1e-12 apart), and the point
-    itself comes as near as that; ``angle``, between them, is the best guess.  ``basis``: the edges (segments, as the
-    instance numbers them) that determine the optimum, increasing.  ``walls``: those among them on
-    whose own line the point lies.  ``vertex``: the polygon's vertex that the point is, or None;
+    itself comes as near as that; ``angle``, between them, is the best guess.  ``basis``: the edges
+    (segments, as the instance numbers them) that determine the optimum, increasing.  ``walls``:
+    those among them on whose own line the point lies.  ``vertex``: the polygon's vertex that the
+    point is, or None;
     its two edges are seen from there under every pair of angles that a direction gives, and the
     optimum is a limit along the best direction, not a value.  ``facts``: what the method did.
     ``exact``: the algebraic number behind it, if that was asked for.
