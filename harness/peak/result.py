@@ -27,10 +27,9 @@ class Peak:
     itself comes as near as that; ``angle``, between them, is the best guess.  ``basis``: the edges
     (segments, as the instance numbers them) that determine the optimum, increasing.  ``walls``:
     those among them on whose own line the point lies.  ``vertex``: the polygon's vertex that the
-    point is, or None;
-    its two edges are seen from there under every pair of angles that a direction gives, and the
-    optimum is a limit along the best direction, not a value.  ``facts``: what the method did.
-    ``exact``: the algebraic number behind it, if that was asked for.
+    point is, or None; its two edges are seen from there under every pair of angles that a
+    direction gives, and the optimum is a limit along the best one, not a value.  ``facts``: what
+    the method did.  ``exact``: the algebraic number behind it, if that was asked for.
     """
 
     x: float
