@@ -1,8 +1,8 @@
 """The method ``diagram``: the paper's naive algorithm, by the angular Voronoi diagram.
 
 The greatest least visual angle is at a vertex of the diagram or on an edge where the circles of its
-two segments touch from outside (an edge may have several such points), or it is approached at an
-end of an edge: a vertex of the polygon, a point on one of its edges.  All of these are looked at.
+two segments touch (an edge may have several such points), or it is approached at an end of an edge: a
+vertex of the polygon, a point on one of its edges.  All of these are looked at.
 """
 
 from __future__ import annotations
@@ -41,13 +41,13 @@ def built(polygon: Polygon, objective: str, builder: str | None) -> PlanarMap:
 def diagram_peak(polygon: Polygon, builder: str | None = None) -> Peak:
     """The peak by the diagram: as dear as the diagram, and O(n) for every vertex and tangency.
 
-    ``facts``: numbers of ``vertices`` and ``edges`` of the diagram and of ``tangencies`` inside
-    the kernel.  Raises :class:`harness.errors.UserError` as :func:`harness.diagram.build`, and
+    ``facts``: numbers of ``vertices`` and ``edges`` of the diagram and of ``tangencies`` of
+    pairs with a common edge.  Raises :class:`harness.errors.UserError` as :func:`harness.diagram.build`, and
     ArithmeticError if the best candidate is not the peak: then the diagram is wrong.
     """
     found = built(polygon, "smallest", builder)
     ends = list(_ends(polygon, found))
-    touching = list(tangent_points(polygon, found, 1))
+    touching = [*tangent_points(polygon, found, 1), *tangent_points(polygon, found, -1)]
     segments = polygon.instance.segments
     best, angle = None, -1.0
     for candidate in (*ends, *touching):

@@ -57,7 +57,7 @@ def test_where_circles_touch_the_gradients_of_the_two_angles_are_parallel(sign, 
 
 
 def test_every_maximum_inside_an_edge_is_a_tangency():
-    """The greatest common angle on an edge, which the map knows, is that of an end or a tangency."""
+    """The greatest common angle on an edge, which the map knows: of an end or a tangency."""
     inner = 0
     for seed in range(6):
         polygon = Polygon(Instance.from_arrays("polygon", generated("near-regular", 6, seed)))
@@ -76,7 +76,8 @@ def test_every_maximum_inside_an_edge_is_a_tangency():
             inner += 1
             angles = [
                 np.arctan2(1, float(c.mid()))
-                for c, _, _ in tangencies(polygon.exact_edges[i], polygon.exact_edges[j], 1)
+                for sign in (1, -1)
+                for c, _, _ in tangencies(polygon.exact_edges[i], polygon.exact_edges[j], sign)
             ]
             assert min(abs(highest - angle) for angle in angles) < 1e-9
     assert inner > 0
