@@ -42,8 +42,9 @@ def diagram_peak(polygon: Polygon, builder: str | None = None) -> Peak:
     """The peak by the diagram: as dear as the diagram, and O(n) for every vertex and tangency.
 
     ``facts``: numbers of ``vertices`` and ``edges`` of the diagram and of ``tangencies`` of
-    pairs with a common edge.  Raises :class:`harness.errors.UserError` as :func:`harness.diagram.build`, and
-    ArithmeticError if the best candidate is not the peak: then the diagram is wrong.
+    pairs with a common edge.  Raises :class:`harness.errors.UserError` as
+    :func:`harness.diagram.build`, and ArithmeticError if the best candidate is not the peak: then
+    the diagram is wrong.
     """
     found = built(polygon, "smallest", builder)
     ends = list(_ends(polygon, found))

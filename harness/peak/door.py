@@ -70,7 +70,7 @@ def _found(polygon: Any, method: str, objective: Objective, seed: int, builder: 
     if method == "parametric":
         from harness.peak.parametric import parametric_peak
 
-        return parametric_peak(polygon, seed)
+        return parametric_peak(polygon)
     from harness.peak.lp import lp_peak
 
     return lp_peak(polygon, seed)

@@ -6,10 +6,10 @@ normal h, |h| = l/2) and the radius (l/2)√(1 + c²).  So the circles of two ed
 
     |m_j − m_i + c (h_j − h_i)|² = ((l_i ± l_j)/2)² (1 + c²):
 
-the quartic of tangent circles is a product of two quadratics.  Where they touch from outside, in the
-kernel, the discs of greater angles are disjoint: a local maximum of the common angle along the
-bisector.  Where they touch from inside both angles grow in the same direction, across the bisector:
-a local maximum or minimum along it, but no maximum in the plane.
+the quartic of tangent circles is a product of two quadratics.  Where they touch from outside, in
+the kernel, the discs of greater angles are disjoint: a local maximum of the common angle along the
+bisector.  Where they touch from inside both angles grow in the same direction, across the
+bisector: a local maximum or minimum along it, but no maximum in the plane.
 """
 
 from __future__ import annotations
