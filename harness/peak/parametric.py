@@ -10,8 +10,7 @@ intersection has one shape for all c in the interval, so it shrinks to nothing a
 which is c*; unless the kernel's boundary, which is no disc, decides: then the rest is bisected.
 
 Decisions are taken by the quadratic program of :mod:`harness.peak.powers`.  Functions of c are
-evaluated in doubles, their sign changes looked for between ``LEVELS`` levels, again after every
-shrinking.  Two of them closer together may be overlooked; so the search is only a search, and its
+evaluated in doubles, their sign changes looked for between ``LEVELS``, again after every shrinking.  Two of them closer together may be overlooked; so the search is only a search, and its
 result is proven like any other (:mod:`harness.peak.proof`).
 """
 
@@ -29,10 +28,13 @@ from harness.peak.proof import prove
 from harness.peak.result import Peak
 from harness.peak.sampling import Ascent, ascent_over
 
-LEVELS = 9
+_NEAR = (1e-11, 1e-8, 1e-5, 1e-2, 0.1, 0.3)
+LEVELS = np.array([*_NEAR, 0.5, *(1 - part for part in reversed(_NEAR))])
+"""Where in the interval sign changes are looked for: close to its ends, where c* may well be."""
+MIDDLE = np.array([0.5])
 HALVINGS = 60
-CLOSED = 2e-15
-"""The width of the interval, in radians, that rounding of levels and decisions cannot narrow."""
+CLOSED = 1e-14
+"""The width of the interval, relative to 1 + |c|, below which decisions would be rounding."""
 ROUNDS = 30
 
 #: Comparisons of a batch: from levels (k, 1) or (1, m), and the numbers of m comparisons, to the
@@ -120,24 +122,23 @@ class Search:
 
     def _check(self) -> None:
         """End the search if the interval is closed."""
-        width = np.arctan2(self.high - self.low, 1.0 + self.low * self.high)
-        relative = (self.high - self.low) / (1.0 + abs(self.high))
-        if not (width > CLOSED and relative > CLOSED):
+        if not self.high - self.low > CLOSED * (1.0 + abs(self.high)):
             raise _ClosedError
 
     def _close(self) -> None:
-        """The interval's lower end is c*, or the kernel's boundary decides: gallop from there."""
-        step = 4.0 * CLOSED * (1.0 + abs(self.low))
-        while self.low + step < self.high:
-            self._narrow(self.low + step)
-            step *= 4.0
+        """One end of the interval is c* up to rounding, or the kernel's boundary decides.
+
+        The first is seen by a decision just inside either end; otherwise bisect.
+        """
+        step = CLOSED * (1.0 + abs(self.high))
+        self._narrow(self.high - step)
+        self._narrow(self.low + step)
         while True:
             self._narrow(float(np.sinh(np.arcsinh([self.low, self.high]).mean())))
 
-    def _levels(self, count: int) -> Floats:
-        """Levels strictly inside, evenly spread over the sizes in between."""
+    def _levels(self, parts: Floats) -> Floats:
+        """Levels strictly inside, at these parts of the way over the sizes in between."""
         ends = np.arcsinh([self.low, self.high])
-        parts = (np.arange(count) + 0.5) / count
         levels: Floats = np.sinh(ends[0] + parts * (ends[1] - ends[0]))
         return levels
 
@@ -155,8 +156,9 @@ class Search:
             if not len(rows):
                 break
             critical = self._critical(levels[rows], levels[rows + 1], values, changing)
-            self._place(np.unique(critical))
-        signs: Booleans = (values(self._levels(1)[:, np.newaxis], every) > 0)[0]
+            if not self._place(np.unique(critical)):
+                break  # they are an end of the interval, up to rounding
+        signs: Booleans = (values(self._levels(MIDDLE)[:, np.newaxis], every) > 0)[0]
         return signs
 
     def _critical(self, low: Floats, high: Floats, values: Values, which: Ints) -> Floats:
@@ -169,12 +171,14 @@ class Search:
             low, high = np.where(same, middle, low), np.where(same, high, middle)
         return np.asarray((low + high) / 2)
 
-    def _place(self, critical: Floats) -> None:
-        """The place of c* among critical values, by binary search."""
+    def _place(self, critical: Floats) -> bool:
+        """The place of c* among critical values, by binary search; whether it took a decision."""
+        narrowed = False
         while True:
             inside = critical[(critical > self.low) & (critical < self.high)]
             if not len(inside):
-                return
+                return narrowed
+            narrowed = True
             self._narrow(float(inside[len(inside) // 2]))
 
     def _x(self, level: Floats, v: Vertices) -> Floats:
