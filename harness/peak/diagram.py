@@ -1,8 +1,8 @@
 """The method ``diagram``: the paper's naive algorithm, by the angular Voronoi diagram.
 
 The greatest least visual angle is at a vertex of the diagram or on an edge where the circles of its
-two segments touch (an edge may have several such points), or it is approached at an end of an edge: a
-vertex of the polygon, a point on one of its edges.  All of these are looked at.
+two segments touch (an edge may have several such points), or it is approached at an end of an
+edge: a vertex of the polygon, a point on one of its edges.  All of these are looked at.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ import numpy as np
 from flint import ctx
 
 from harness.diagram import build
+from harness.diagram.counts import Objective
 from harness.diagram.planar_map import PlanarMap
 from harness.geometry.visual_angle import visual_angle
 from harness.peak.polygon import Floats, Polygon
@@ -31,11 +32,10 @@ NEAR = 1e-7
 Candidate = tuple[tuple[float, float], tuple[int, ...]]
 
 
-def built(polygon: Polygon, objective: str, builder: str | None) -> PlanarMap:
+def built(polygon: Polygon, objective: Objective, builder: str | None) -> PlanarMap:
     """The diagram in the kernel, by a builder that suits the number of edges."""
     chosen = builder or ("reference" if polygon.n <= FEW else "fast")
-    which = "smallest" if objective == "smallest" else "largest"
-    return build(polygon.instance, "kernel", which, builder=chosen)
+    return build(polygon.instance, "kernel", objective, builder=chosen)
 
 
 def diagram_peak(polygon: Polygon, builder: str | None = None) -> Peak:

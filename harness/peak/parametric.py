@@ -10,7 +10,8 @@ intersection has one shape for all c in the interval, so it shrinks to nothing a
 which is c*; unless the kernel's boundary, which is no disc, decides: then the rest is bisected.
 
 Decisions are taken by the quadratic program of :mod:`harness.peak.powers`.  Functions of c are
-evaluated in doubles, their sign changes looked for between ``LEVELS``, again after every shrinking.  Two of them closer together may be overlooked; so the search is only a search, and its
+evaluated in doubles, their sign changes looked for between ``LEVELS``, again after every
+shrinking.  Two of them closer together may be overlooked; so the search is only a search, and its
 result is proven like any other (:mod:`harness.peak.proof`).
 """
 
