@@ -7,11 +7,11 @@ and nothing else is known to it.  None of them proves anything.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import differential_evolution, minimize
+from scipy import optimize
 
 from harness.geometry.instance import Instance
 from harness.geometry.kernel import kernel
@@ -19,6 +19,9 @@ from harness.geometry.kernel import kernel
 Floats = npt.NDArray[np.float64]
 
 RESTARTS = 10
+
+#: With fewer demands on the shapes of arrays than its stubs have.
+minimise: Callable[..., Any] = optimize.minimize
 
 
 class Reached(NamedTuple):
@@ -64,7 +67,7 @@ def nelder_mead(instance: Instance, seed: int = 0) -> Reached:
     problem = _Problem(instance, seed)
     options = {"xatol": 1e-12, "fatol": 1e-14, "maxiter": 2000, "maxfev": 4000}
     found = [
-        minimize(problem.cost, start, method="Nelder-Mead", options=options)
+        minimise(problem.cost, start, method="Nelder-Mead", options=options)
         for start in problem.starts
     ]
     best = min(found, key=lambda one: float(one.fun))
@@ -74,8 +77,8 @@ def nelder_mead(instance: Instance, seed: int = 0) -> Reached:
 def evolution(instance: Instance, seed: int = 0) -> Reached:
     """Differential evolution in the box of the kernel."""
     problem = _Problem(instance, seed)
-    box = list(zip(problem.low.tolist(), problem.high.tolist(), strict=True))
-    best = differential_evolution(problem.cost, box, rng=seed, tol=1e-12, polish=False)
+    box = optimize.Bounds(problem.low, problem.high)
+    best = optimize.differential_evolution(problem.cost, box, rng=seed, tol=1e-12, polish=False)
     return Reached(float(best.x[0]), float(best.x[1]), problem.evaluations)
 
 
@@ -90,7 +93,7 @@ def slsqp(instance: Instance, seed: int = 0) -> Reached:
     }
     best = (np.inf, problem.starts[0])
     for start in problem.starts:
-        found = minimize(
+        found = minimise(
             lambda z: -z[2],
             np.append(start, -problem.cost(start)),
             jac=lambda _z: np.array([0.0, 0.0, -1.0]),

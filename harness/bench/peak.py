@@ -81,9 +81,9 @@ FACTS = (
     Fact("comparisons_per_nlog2n", "/ n log² n", ".3f"),
     Fact("evaluations", "evaluations", "d"),
 )
-"""``angle``: the least visual angle reached, the least of a batch; ``short_of_optimum``: by how much
-an optimiser misses the proven angle, for the others the width of the enclosure; the rest is what
-the methods did."""
+"""``angle``: the least visual angle reached, the least of a batch; ``short_of_optimum``: by how
+much an optimiser misses the proven angle, for the others the width of the enclosure; the rest is
+what the methods did."""
 
 
 def warm_up(_builder: str, _n: int) -> None:

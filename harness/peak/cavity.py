@@ -15,6 +15,7 @@ fewer than three vertices, two equal neighbours, no area, or coordinates that ar
 WIDTH = 1e-12
 """The greatest difference between the proven bounds of a certified angle, in radians."""
 STEP_INSIDE = 2.0**-50
+MOST_TRIES = 3
 
 
 @compiled
@@ -130,17 +131,23 @@ def peak_of(x, y, first, n, space, basis, nu, row, chosen, out):
         oy += y[first + k] / n
     place(ox, oy, x, y, first, n, sense, ax, ay, dx, dy)
     start, capped = greatest_cap(dx, dy, n)
-    state = out
-    state[0] = state[1] = state[2] = 0.0
-    c, steps = ascend(start, state, basis, nu, row, chosen, ax, ay, dx, dy, n)
-    px, py = inside(state[0], state[1], abs(ox) + abs(oy), basis, ax, ay, dx, dy)
-    vertex = certify(
-        c, start, capped, ox + px, oy + py, basis, nu, x, y, first, n, sense, ax, ay, dx, dy, out
-    )
+    state = np.zeros(3)
+    for _ in range(MOST_TRIES):
+        state[:] = 0.0
+        basis[:] = NONE
+        c, _ = ascend(start, state, basis, nu, row, chosen, ax, ay, dx, dy, n)
+        px, py = inside(state[0], state[1], abs(ox) + abs(oy), basis, ax, ay, dx, dy)
+        ox, oy = ox + px, oy + py
+        vertex = certify(
+            c, start, capped, ox, oy, basis, nu, x, y, first, n, sense, ax, ay, dx, dy, out
+        )
+        if not out[3] - out[2] > WIDTH:  # good enough, or no point inside
+            break
+        place(ox, oy, x, y, first, n, sense, ax, ay, dx, dy)  # more accurate from near by
     if sense < 0:
         for k in range(3):
             if basis[k] != NONE:
                 basis[k] = 2 * (n - 1 - (basis[k] >> 1)) + (basis[k] & 1)
         if vertex > 0:
             vertex = n - vertex
-    return (CERTIFIED if steps >= 0 and out[3] - out[2] <= WIDTH else OPEN), vertex
+    return (CERTIFIED if out[3] - out[2] <= WIDTH else OPEN), vertex
