@@ -59,7 +59,7 @@ def cotangent_bound(c, basis, nu, ax, ay, dx, dy, n):
     Every product is off by less than 8u of its size.
     """
     value = gx = gy = s = hx = hy = total = 0.0
-    value_size = g_size = s_size = 0.0
+    value_size = g_size = s_size = h_size = 0.0
     for k in range(3):
         if basis[k] == NONE:
             continue
@@ -84,13 +84,14 @@ def cotangent_bound(c, basis, nu, ax, ay, dx, dy, n):
         s_size += weight * area_size
         hx -= weight * wy
         hy += weight * wx
+        h_size += weight * (abs(wx) + abs(wy))
         total += weight
     value -= 16.0 * ULP * value_size
     s -= 16.0 * ULP * s_size
     slope = np.sqrt(gx * gx + gy * gy) * (1.0 + 8.0 * ULP) + 16.0 * ULP * g_size
     if not (s > 0.0 and total > 0.0):
         return -np.inf
-    turn = np.sqrt(hx * hx + hy * hy) * (1.0 + 64.0 * ULP)
+    turn = np.sqrt(hx * hx + hy * hy) * (1.0 + 8.0 * ULP) + 16.0 * ULP * h_size
     eta = 1.01 * max(0.0, slope * slope / (4.0 * total) - value) / s
     moved = slope + eta * turn
     if value + eta * s >= 1.001 * moved * moved / (4.0 * total) and eta < np.inf:
@@ -102,3 +103,13 @@ def cotangent_bound(c, basis, nu, ax, ay, dx, dy, n):
 def angle_of(c):
     """acot c in (0, π), rounded up; π for c = −∞."""
     return np.arctan2(1.0, c) + 8.0 * ULP
+
+
+@compiled
+def bound_of_start(c):
+    """The angle of the level an ascent starts from, rounded up.
+
+    That level is a quotient of sine and cosine of 2π/n, or of half the turn at a vertex, which
+    rounding moves by a few u of radians.
+    """
+    return angle_of(c) + 16.0 * ULP

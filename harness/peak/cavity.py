@@ -6,7 +6,7 @@ import numpy as np
 
 from harness.geometry.jit import compiled
 from harness.peak.ascent import ascend, greatest_cap
-from harness.peak.bounds import SEEN, angle_of, cotangent_bound, least_angle
+from harness.peak.bounds import SEEN, angle_of, bound_of_start, cotangent_bound, least_angle
 from harness.peak.powers import NONE
 
 CERTIFIED, OPEN, IMPROPER = 0, 1, 2
@@ -72,7 +72,7 @@ def certify(c, start, capped, px, py, basis, nu, x, y, first, n, sense, ax, ay, 
     edges and, if it is seen under less, a third.
     """
     place(px, py, x, y, first, n, sense, ax, ay, dx, dy)
-    upper = angle_of(start)
+    upper = bound_of_start(start)
     lower, _ = least_angle(NONE, ax, ay, dx, dy, n)
     out[0], out[1] = px, py
     upper = min(upper, angle_of(cotangent_bound(c, basis, nu, ax, ay, dx, dy, n)))

@@ -37,6 +37,9 @@ HALVINGS = 60
 CLOSED = 1e-14
 """The width of the interval, relative to 1 + |c|, below which decisions would be rounding."""
 ROUNDS = 30
+NEAR = 1e-7
+"""How far, in radians, the search may end from the proven angle: far from the origin it sees
+rounded coordinates."""
 
 #: Comparisons of a batch: from levels (k, 1) or (1, m), and the numbers of m comparisons, to the
 #: values whose signs are wanted, (k, m) or (1, m).
@@ -51,17 +54,25 @@ def parametric_peak(polygon: Polygon) -> Peak:
     """The peak by parametric search.
 
     ``facts``: ``decisions``, each O(n) expected; ``comparisons``; ``batches`` of them;
-    ``critical`` values.  Raises as :func:`harness.peak.proof.prove`.
+    ``critical`` values.  Raises as :func:`harness.peak.proof.prove`, and ArithmeticError if the
+    search ends at another level than that of the peak.
     """
     facts: dict[str, int] = {}
+    ends: list[float] = []
 
     def look(start: float, edges: Floats) -> Ascent:
         search = Search(start, edges)
         among = search.run()
         facts.update(search.facts)
+        ends.append(float(np.arctan2(1.0, search.high)))
         return ascent_over(start, edges, among)
 
-    return prove(polygon, look, "parametric", facts)
+    found = prove(polygon, look, "parametric", facts)
+    if abs(found.angle - ends[-1]) > NEAR:
+        raise ArithmeticError(
+            f"{polygon.instance.label}: the search ends at {ends[-1]}, the peak is {found.angle}"
+        )
+    return found
 
 
 class Search:

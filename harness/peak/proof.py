@@ -16,7 +16,7 @@ import numpy as np
 from flint import ctx
 
 from harness.geometry.exact import ExactPoint, fraction, point
-from harness.peak.bounds import SEEN, angle_of, cotangent_bound, least_angle
+from harness.peak.bounds import SEEN, angle_of, bound_of_start, cotangent_bound, least_angle
 from harness.peak.cavity import certify, inside, place
 from harness.peak.polygon import Floats, Polygon
 from harness.peak.powers import NONE
@@ -124,7 +124,7 @@ def _best_of(
             constraints = _at_vertex(polygon.n, corner, edge if lower < own else None)
             lower = min(lower, own)
         bound = cotangent_bound(end.level, end.constraints, end.multipliers, *edges, polygon.n)
-        upper = min(angle_of(start), angle_of(bound), np.inf if best is None else best.upper)
+        upper = min(bound_of_start(start), angle_of(bound), np.inf if best is None else best.upper)
         if best is not None:
             best.upper = min(best.upper, upper)
         if lower > 0 and (best is None or lower > best.lower):

@@ -83,6 +83,28 @@ def test_every_maximum_inside_an_edge_is_a_tangency():
     assert inner > 0
 
 
+def test_a_diagram_that_lacks_the_best_vertex_is_found_out(monkeypatch):
+    from harness.peak import diagram
+
+    whole = diagram._ends
+    monkeypatch.setattr(diagram, "_ends", lambda *arguments: list(whole(*arguments))[1:])
+    monkeypatch.setattr(diagram, "tangent_points", lambda *_: [])
+    told = [told_by(generated("near-regular", 5, seed).tolist()) for seed in range(8)]
+    assert None in told
+    assert any(told)
+    assert all(reason is None or "the diagram's best angle is" in reason for reason in told)
+
+
+def told_by(vertices: list) -> str | None:
+    """What the method complains about; None if it finds the peak all the same."""
+    try:
+        found = peak(vertices, "diagram")
+    except ArithmeticError as problem:
+        return str(problem)
+    assert found.basis == peak(vertices).basis
+    return None
+
+
 # --- min–max -------------------------------------------------------------------------------------
 
 

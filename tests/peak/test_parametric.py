@@ -77,3 +77,16 @@ def test_every_decision_is_right():
     for factor in (0.5, 0.9, 0.999, 0.999999):
         assert not search.decide(level * factor)
         assert search.decide(level / factor)
+
+
+def test_a_search_that_ends_elsewhere_is_found_out(monkeypatch):
+    """Decisions that err on one side let the search end at another level."""
+    vertices = generated("near-regular", 9, 1).tolist()
+    right = Search.decide
+
+    def wrong(self, level: float) -> bool:
+        return right(self, level - 0.1)
+
+    monkeypatch.setattr(Search, "decide", wrong)
+    with pytest.raises(ArithmeticError, match="the search ends at"):
+        peak(vertices, "parametric")
