@@ -16,6 +16,7 @@ from harness.bench.timing import seconds_of, timed
 from harness.geometry.instance import Instance
 from harness.geometry.visual_angle import visual_angle
 from harness.peak import peak, peaks
+from harness.peak.diagram import FEW
 from harness.peak.result import METHODS, WIDTH
 from harness.study.limits import Limits, peak_mib
 
@@ -86,13 +87,18 @@ much an optimiser misses the proven angle, for the others the width of the enclo
 what the methods did."""
 
 
-def warm_up(_builder: str, _n: int) -> None:
-    """One small polygon by every method, one large, and a batch, so that everything is compiled."""
+def warm_up(builder: str, n: int) -> None:
+    """One small polygon by every method, one large, and a batch, so that everything is compiled.
+
+    Diagrams of more than a few edges have a builder of their own, which takes a minute to compile.
+    """
     small = Instance.from_generated(generators.generate("star", 6))
     for method in METHODS:
         peak(small, method)
     peak(Instance.from_generated(generators.generate("star", 2000)))
     peaks(small.floats[np.newaxis])
+    if builder == "diagram" and n > FEW:
+        peak(Instance.from_generated(generators.generate("star", FEW + 1)), "diagram")
 
 
 def measure(task: Task, *, repeat: int, workers: int | None) -> Measured:

@@ -58,22 +58,27 @@ def peak(
 
 
 def _found(polygon: Any, method: str, objective: Objective, seed: int, builder: str | None) -> Peak:
-    """The peak by one method."""
+    """The peak by one method; those that look at points in doubles do it near the origin."""
+    if method == "lp" and objective == "max-min":
+        from harness.peak.lp import lp_peak
+
+        return lp_peak(polygon, seed)
+    from harness.peak.shifting import near_origin, shifted
+
+    moved, shift = near_origin(polygon)
     if objective == "min-max":
         from harness.peak.min_max import min_max_peak
 
-        return min_max_peak(polygon, builder)
-    if method == "diagram":
+        found = min_max_peak(moved, builder)
+    elif method == "diagram":
         from harness.peak.diagram import diagram_peak
 
-        return diagram_peak(polygon, builder)
-    if method == "parametric":
+        found = diagram_peak(moved, builder)
+    else:
         from harness.peak.parametric import parametric_peak
 
-        return parametric_peak(polygon)
-    from harness.peak.lp import lp_peak
-
-    return lp_peak(polygon, seed)
+        found = parametric_peak(moved)
+    return shifted(found, shift)
 
 
 def _validated(vertices: Any) -> Instance:

@@ -1,5 +1,7 @@
 """Peaks by the diagram, for both objectives: against the other methods and plain searches."""
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 from flint import ctx
@@ -81,6 +83,19 @@ def test_every_maximum_inside_an_edge_is_a_tangency():
             ]
             assert min(abs(highest - angle) for angle in angles) < 1e-9
     assert inner > 0
+
+
+@pytest.mark.parametrize("name", KNOWN)
+@pytest.mark.parametrize("shift", [(10**7, -(10**9)), (Fraction(1, 3), 10**30)])
+@pytest.mark.parametrize(
+    "options", [{"method": "diagram"}, {"method": "parametric"}, {"objective": "min-max"}]
+)
+def test_where_a_polygon_is_does_not_matter(name, shift, options):
+    vertices = KNOWN[name][0]
+    moved = [(Fraction(x) + shift[0], Fraction(y) + shift[1]) for x, y in vertices]
+    one, other = peak(vertices, **options), peak(moved, **options)
+    assert max(one.lower, other.lower) <= min(one.upper, other.upper)
+    assert max(one.upper - one.lower, other.upper - other.lower) <= 1e-12
 
 
 def test_a_diagram_that_lacks_the_best_vertex_is_found_out(monkeypatch):

@@ -42,7 +42,7 @@ def discs(draw):
 
 
 @given(discs())
-@settings(max_examples=300)
+@settings(max_examples=150)
 def test_it_is_what_brute_force_finds(given_discs):
     centres, radii = given_discs
     found = meet(centres, radii)

@@ -134,7 +134,7 @@ def test_segments_have_no_peak():
 
 
 @given(st.sampled_from(["star", "near-regular", "convex-circle"]), st.integers(0, 10**6))
-@settings(max_examples=20)
+@settings(max_examples=10)
 def test_samples_find_what_looking_at_everything_finds(family, seed):
     polygon = Polygon(Instance.from_arrays("polygon", generated(family, 2000, seed).tolist()))
     edges, start = polygon.edges_from(polygon.inner_point()), polygon.start[0]
