@@ -6,9 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
-from harness.geometry.coordinates import Point
-
 if TYPE_CHECKING:
+    from harness.geometry.coordinates import Point
     from harness.peak.algebra import ExactPeak
 
 Objective = Literal["max-min", "min-max"]
