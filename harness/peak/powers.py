@@ -91,7 +91,7 @@ def best_subset(row, count, needed, chosen, nu):
     """(value, x, y): the subset of the rows, with row ``needed`` in it, of greatest value.
 
     ``chosen`` receives its row numbers (−1: none), ``nu`` its multipliers.  ``needed`` −1 asks for
-    any subset; then all three rows together, if their multipliers allow it, are the answer.
+    any subset.
     """
     best, x, y = -np.inf, 0.0, 0.0
     chosen[0] = chosen[1] = chosen[2] = NONE
