@@ -30,6 +30,7 @@ ROOMS = (
     "files",
     "geometry",
     "diagram",
+    "peak",
     "generators",
     "study",
     "bench",

@@ -25,16 +25,23 @@ class Measured:
     ``Benchmark.unit``) one repeat produced.  ``peak_mib``: the greatest resident memory of the
     process until the last repeat was over, in MiB.  ``warm_up``: seconds spent before the first
     repeat on compiling, or on loading what was compiled before.  ``facts``: the benchmark's own
-    columns, None where the builder does not tell.
+    columns, None where the builder does not tell.  ``counts``: None if no diagram is counted; then
+    ``proven`` says whether the result is certified.
     """
 
     timings: tuple[float, ...]
     amount: int
-    counts: Counts
+    counts: Counts | None
     workers: int
     peak_mib: float
     warm_up: float
     facts: Mapping[str, float | None]
+    proven: bool = False
+
+    @property
+    def is_certified(self) -> bool:
+        """Whether every decision behind the result was exact, or the result is proven."""
+        return self.proven if self.counts is None else self.counts.certified
 
     @property
     def seconds(self) -> float:
@@ -65,7 +72,7 @@ class Target:
         """
         if self == Target():
             return None
-        if measured is None or not measured.counts.certified:
+        if measured is None or not measured.is_certified:
             return False
         return (
             (self.rate is None or measured.per_second >= self.rate)
@@ -76,7 +83,10 @@ class Target:
 
 @dataclass(frozen=True)
 class Case:
-    """One instance of a benchmark: seed 0 of a family, and what is built of it."""
+    """One instance of a benchmark: seed 0 of a family, and what is built of it.
+
+    ``by``: what does it, where that is the case's own matter; None for the builder asked for.
+    """
 
     name: str
     family: str
@@ -85,6 +95,7 @@ class Case:
     params: Mapping[str, Scalar] = field(default_factory=dict)
     objective: Objective = "smallest"
     target: Target = Target()
+    by: str | None = None
 
     def task(self, builder: str) -> Task:
         """The case as a task, with every parameter of the family."""
@@ -97,7 +108,7 @@ class Case:
             seed=0,
             domain=self.domain,
             objective=self.objective,
-            builder=builder,
+            builder=self.by or builder,
         )
 
 

@@ -28,6 +28,7 @@ def columns_of(benchmark: Benchmark) -> tuple[str, ...]:
     return (
         NAME,
         *COLUMNS,
+        *([] if benchmark.unit in COLUMNS else [benchmark.unit]),
         "timings",
         benchmark.rate_column,
         *(fact.column for fact in benchmark.facts),
@@ -70,10 +71,17 @@ def bench_row(
             "workers": measured.workers,
             "warm_up_seconds": measured.warm_up,
         }
+        if measured.counts is None:
+            values |= {
+                benchmark.unit: measured.amount,
+                "certified": measured.is_certified,
+                "seconds": measured.seconds,
+            }
+            measurement = None
+        else:
+            measurement = Measurement(measured.counts, measured.seconds)
         study_outcome = dataclasses.replace(
-            outcome,
-            measurement=Measurement(measured.counts, measured.seconds),
-            peak_mib=measured.peak_mib,
+            outcome, measurement=measurement, peak_mib=measured.peak_mib
         )
     return {
         **dict.fromkeys(columns_of(benchmark), ""),
@@ -97,7 +105,9 @@ def _cell(value: Any) -> str:
 
 
 def _rounded(value: Any) -> Any:
-    """Microseconds, and no digits beyond that anybody could mean."""
+    """Microseconds, and no digits beyond that anybody could mean; nine digits of small numbers."""
     if isinstance(value, list):
         return [_rounded(item) for item in value]
-    return round(value, 6) if isinstance(value, float) else value
+    if isinstance(value, float):
+        return round(value, 6) if abs(value) >= 1 else float(f"{value:.9g}")
+    return value

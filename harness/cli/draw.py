@@ -5,8 +5,12 @@ from __future__ import annotations
 import argparse
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from harness.cli.options import FORMATS, add_diagram_options, load
+
+if TYPE_CHECKING:
+    from harness.geometry.instance import Instance
 
 PICTURES = (".svg", ".png", ".pdf")
 
@@ -40,6 +44,11 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         help="the part to show (default: all segments, and all nodes that are not far away)",
     )
     parser.add_argument("--labels", action="store_true", help="write each cell's segment into it")
+    parser.add_argument(
+        "--peak",
+        action="store_true",
+        help="mark the point of best visual angle (max-min; with --objective largest min-max)",
+    )
     parser.add_argument("--no-nodes", action="store_true", help="leave out the marks of nodes")
     parser.add_argument("--title", metavar="TEXT", help="default: the name of the instance")
     parser.add_argument("--caption", metavar="TEXT", help="default: the counts; empty for none")
@@ -58,6 +67,7 @@ def run(args: argparse.Namespace) -> int:
     from harness.report.drawing import render
 
     instance = load(args.file)
+    marked = _peak(instance, args) if args.peak else None
     picture = render(
         build(instance, args.domain, args.objective, args.builder),
         suffix[1:],
@@ -67,9 +77,21 @@ def run(args: argparse.Namespace) -> int:
         nodes=not args.no_nodes,
         title=instance.name if args.title is None else args.title,
         caption=args.caption,
+        peak=marked,
     )
     if target is None:
         sys.stdout.buffer.write(picture)
     else:
         replace(target, picture)
     return 0
+
+
+def _peak(instance: Instance, args: argparse.Namespace) -> tuple[float, float]:
+    """The point to mark: that of the objective that the diagram is for."""
+    from harness.peak import peak
+
+    if args.objective == "smallest":
+        found = peak(instance)
+    else:
+        found = peak(instance, objective="min-max", builder=args.builder)
+    return found.x, found.y

@@ -90,16 +90,18 @@ def picture(
     labels: bool = False,
     title: str | None = None,
     caption: str | None = None,
+    peak: tuple[float, float] | None = None,
 ) -> Figure:
     """A figure of a diagram, ``width`` inches wide, with a legend; see :func:`plot`.
 
     If the domain is a kernel much smaller than the polygon and no window is given, a second panel
-    enlarges it.  ``caption`` is by default a line with the counts; give "" for none.
+    enlarges it.  ``caption`` is by default a line with the counts; give "" for none.  ``peak``: a
+    point to be marked as the peak.
     """
     if not (math.isfinite(width) and 1 <= width <= 100):
         raise UserError(f"the width must be between 1 and 100 inches, not {width:g}")
     panels = _panels(diagram) if window is None else [Panel(checked_window(window))]
-    layers = Layers(diagram)
+    layers = Layers(diagram, peak)
     legend = layers.legend(nodes)
     lines = math.ceil(len(legend) * LEGEND_COLUMN / (width - 2 * PAD))
     columns = math.ceil(len(legend) / lines)

@@ -34,16 +34,27 @@ NODE_MARKS: dict[NodeKind, tuple[str, dict[str, Any]]] = {
     "boundary": ("boundary end", {"marker": "v", "markersize": 3.6, "markerfacecolor": "white"}),
 }
 
+PEAK_MARK: dict[str, Any] = {
+    "marker": "*",
+    "markersize": 11,
+    "markerfacecolor": "#e31a1c",
+    "markeredgecolor": "white",
+    "markeredgewidth": 0.8,
+    "linestyle": "none",
+    "label": "peak",
+}
+
 # Bottom to top.
-_GROUND, _CELLS, _EDGES, _DOMAIN, _SEGMENTS, _NODES, _WORDS = range(1, 8)
+_GROUND, _CELLS, _EDGES, _DOMAIN, _SEGMENTS, _NODES, _PEAK, _WORDS = range(1, 9)
 
 
 class Layers:
     """Draws one diagram into any number of windows; colours are the same in all of them."""
 
-    def __init__(self, diagram: PlanarMap) -> None:
+    def __init__(self, diagram: PlanarMap, peak: tuple[float, float] | None = None) -> None:
         """O(n²) for the colours; curves are followed when a window is drawn."""
         self.diagram = diagram
+        self.peak = peak
         self.styles: list[Style] = styles(
             diagram.instance.n,
             (edge.segments for edge in diagram.edges),
@@ -81,6 +92,9 @@ class Layers:
         self._draw_segments(axes, scale, window)
         if nodes:
             self._draw_nodes(axes)
+        if self.peak is not None:
+            x, y = self.peak
+            axes.add_line(Line2D([x], [y], zorder=_PEAK, **PEAK_MARK))
 
     def _draw_cells(self, axes: Axes, shapes: Shapes, scale: float, labels: bool) -> None:
         for k, cell in enumerate(self.diagram.cells):
@@ -140,7 +154,9 @@ class Layers:
         ]
         if self.kernel is not None:
             entries.append(Line2D([], [], label="kernel", **KERNEL_LINE))
-        return entries + ([_marks(kind, [], []) for kind in self.kinds] if nodes else [])
+        if nodes:
+            entries += [_marks(kind, [], []) for kind in self.kinds]
+        return entries + ([] if self.peak is None else [Line2D([], [], **PEAK_MARK)])
 
 
 def compound(rings: list[Points]) -> Outline:

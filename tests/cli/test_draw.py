@@ -72,3 +72,20 @@ def test_what_cannot_be_drawn_is_said_and_nothing_written(arguments, status, hin
     assert hint in told.err
     assert told.out == ""
     assert [path.name for path in square.parent.iterdir()] == ["square.json"]
+
+
+@pytest.mark.usefixtures("square")
+@pytest.mark.parametrize("objective", ["smallest", "largest"])
+def test_the_peak_is_marked_where_it_is(objective, capfdbinary):
+    assert main(["draw", "square.json", "--peak", "--objective", objective, "--title", ""]) == 0
+    diagram = build(read_instance("square.json"), objective=objective)
+    marked = capfdbinary.readouterr().out
+    assert marked == render(diagram, title="", peak=(2.0, 2.0))
+    assert marked != render(diagram, title="")
+
+
+def test_segments_have_no_peak_to_mark(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "pair.wkt").write_text("MULTILINESTRING ((0 0, 1 0), (3 1, 4 3))")
+    assert main(["draw", "pair.wkt", "--peak"]) == 1
+    assert capsys.readouterr().err == "avd: pair.wkt: only a polygon has a peak, not segments\n"
