@@ -24,7 +24,7 @@ from __future__ import annotations
 import numpy as np
 
 from harness.geometry.jit import compiled
-from harness.peak.powers import NONE, settle
+from harness.peak.powers import FAINT, NONE, settle
 
 MOST_STEPS = 200
 CLOSE = 1e-16
@@ -32,11 +32,17 @@ CLOSE = 1e-16
 
 @compiled
 def cap_cotangent(ux, uy, vx, vy):
-    """cot(π − γ/2) at a vertex between consecutive edge vectors u and v; −∞ if it is no matter.
+    """cot(π − γ/2) at a vertex between consecutive edge vectors u and v; −∞ if it is unknown.
 
-    γ = π − turn, so π − γ/2 = π/2 + turn/2 and its cotangent is −tan(turn/2) = −|u×v| …, written
-    as sin/(1 + cos) or (1 − cos)/sin, whichever does not cancel.
+    γ = π − turn, so π − γ/2 = π/2 + turn/2 and its cotangent is −tan(turn/2), written as
+    sin/(1 + cos) or (1 − cos)/sin, whichever does not cancel.  The lengths of u and v are no
+    matter and are taken out, lest their products leave the range of doubles.  Vectors so short
+    that scaling may have rounded them say nothing.
     """
+    length, width = max(abs(ux), abs(uy)), max(abs(vx), abs(vy))
+    if not min(length, width) > FAINT:
+        return -np.inf
+    ux, uy, vx, vy = ux / length, uy / length, vx / width, vy / width
     sine, cosine = ux * vy - uy * vx, ux * vx + uy * vy
     if sine == 0.0:
         return -np.inf if cosine >= 0.0 else np.inf

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from harness.geometry.jit import compiled
 from harness.peak.ascent import ascend, greatest_cap
-from harness.peak.bounds import SEEN, angle_of, bound_of_start, cotangent_bound, least_angle
-from harness.peak.powers import NONE
+from harness.peak.bounds import SEEN, ULP, angle_of, bound_of_start, cotangent_bound, least_angle
+from harness.peak.powers import FAINT, NONE
 
 CERTIFIED, OPEN, IMPROPER = 0, 1, 2
 """The bounds are close enough; they are not (or the kernel has no interior); no polygon at all:
@@ -19,8 +21,21 @@ MOST_TRIES = 3
 
 
 @compiled
-def place(ox, oy, x, y, first, n, sense, ax, ay, dx, dy):
-    """Starts and directions of the edges, counter-clockwise, seen from (ox, oy).
+def unit_of(x, y, first, n):
+    """A power of two that brings the polygon to a size between 1/2 and 1, or as near as can be.
+
+    So that no product of coordinates leaves the range of doubles on account of the size alone.
+    """
+    size = 0.0
+    for k in range(first, first + n):
+        size = max(size, abs(0.5 * x[k] - 0.5 * x[first]), abs(0.5 * y[k] - 0.5 * y[first]))
+    exponent = math.frexp(size)[1] + 1
+    return math.ldexp(1.0, min(max(-exponent, -1020), 1020))
+
+
+@compiled
+def place(ox, oy, unit, x, y, first, n, sense, ax, ay, dx, dy):
+    """Starts and directions of the edges, counter-clockwise, seen from (ox, oy), times ``unit``.
 
     With ``sense`` −1 the vertices are listed clockwise and edge j is segment n − 1 − j.
     """
@@ -29,21 +44,27 @@ def place(ox, oy, x, y, first, n, sense, ax, ay, dx, dy):
             a, b = first + j, first + (j + 1 if j + 1 < n else 0)
         else:
             a, b = first + (n - j if j > 0 else 0), first + n - 1 - j
-        ax[j], ay[j] = x[a] - ox, y[a] - oy
-        dx[j], dy[j] = x[b] - x[a], y[b] - y[a]
+        ax[j], ay[j] = unit * (x[a] - ox), unit * (y[a] - oy)
+        dx[j], dy[j] = unit * (x[b] - x[a]), unit * (y[b] - y[a])
 
 
 @compiled
-def twice_area(x, y, first, n):
-    """Twice the signed area; NaN if a coordinate is not finite or two neighbours are equal."""
-    area = 0.0
+def twice_area(unit, x, y, first, n):
+    """(area, error): twice the signed area, times ``unit`` squared, and how far it may be off.
+
+    The area is NaN if a coordinate is not finite or two neighbours are equal.
+    """
+    area = size = 0.0
     ox, oy = x[first], y[first]
     for k in range(n):
         a, b = first + k, first + (k + 1 if k + 1 < n else 0)
         if not (np.isfinite(x[a]) and np.isfinite(y[a])) or (x[a] == x[b] and y[a] == y[b]):
-            return np.nan
-        area += (x[a] - ox) * (y[b] - oy) - (y[a] - oy) * (x[b] - ox)
-    return area
+            return np.nan, 0.0
+        ux, uy, vx, vy = x[a] - ox, y[a] - oy, x[b] - ox, y[b] - oy
+        left, right = unit * ux * (unit * vy), unit * uy * (unit * vx)
+        area += left - right
+        size += abs(left) + abs(right) + FAINT
+    return area, (n + 4.0) * 2.0 * ULP * size
 
 
 @compiled
@@ -63,15 +84,15 @@ def inside(px, py, ulps_of, basis, ax, ay, dx, dy):
 
 
 @compiled
-def certify(c, start, capped, px, py, basis, nu, x, y, first, n, sense, ax, ay, dx, dy, out):
+def certify(c, start, capped, px, py, unit, basis, nu, x, y, first, n, sense, ax, ay, dx, dy, out):
     """Fill ``out`` = (x, y, lower, upper) near (px, py); the vertex that the point is, or −1.
 
-    ``start``: the level at which the ascent began, which bounds the angle from above; ``capped``:
+    ``unit``: see :func:`place`.  ``start``: the level at which the ascent began, which bounds the angle from above; ``capped``:
     the vertex whose cap that is (−1: none).  A vertex counts as a point at which its two edges
     are seen under its cap (the limit along the best direction); the basis then becomes these two
     edges and, if it is seen under less, a third.
     """
-    place(px, py, x, y, first, n, sense, ax, ay, dx, dy)
+    place(px, py, unit, x, y, first, n, sense, ax, ay, dx, dy)
     upper = bound_of_start(start)
     lower, _ = least_angle(NONE, ax, ay, dx, dy, n)
     out[0], out[1] = px, py
@@ -86,7 +107,7 @@ def certify(c, start, capped, px, py, basis, nu, x, y, first, n, sense, ax, ay, 
         if slot < 6 and slot & 1:
             corner = corner + 1 if corner + 1 < n else 0
         k = first + (corner if sense > 0 else (n - corner if corner > 0 else 0))
-        place(x[k], y[k], x, y, first, n, sense, ax, ay, dx, dy)
+        place(x[k], y[k], unit, x, y, first, n, sense, ax, ay, dx, dy)
         before = n - 1 if corner == 0 else corner - 1
         turn = np.arctan2(
             dx[before] * dy[corner] - dy[before] * dx[corner],
@@ -121,29 +142,34 @@ def peak_of(x, y, first, n, space, basis, nu, row, chosen, out):
     basis[:] = NONE
     if n < 3:
         return IMPROPER, NONE
-    area = twice_area(x, y, first, n)
-    if not abs(area) > 0.0:
+    unit = unit_of(x, y, first, n)
+    area, error = twice_area(unit, x, y, first, n)
+    if area == 0.0 or np.isnan(area):
         return IMPROPER, NONE
+    if not abs(area) > error:  # which side is inside?
+        out[3] = np.pi
+        return OPEN, NONE
     sense = 1 if area > 0.0 else -1
     ox = oy = 0.0
     for k in range(n):
         ox += x[first + k] / n
         oy += y[first + k] / n
-    place(ox, oy, x, y, first, n, sense, ax, ay, dx, dy)
+    place(ox, oy, unit, x, y, first, n, sense, ax, ay, dx, dy)
     start, capped = greatest_cap(dx, dy, n)
     state = np.zeros(3)
     for _ in range(MOST_TRIES):
         state[:] = 0.0
         basis[:] = NONE
         c, _ = ascend(start, state, basis, nu, row, chosen, ax, ay, dx, dy, n)
-        px, py = inside(state[0], state[1], abs(ox) + abs(oy), basis, ax, ay, dx, dy)
-        ox, oy = ox + px, oy + py
+        ulps_of = unit * (abs(ox) + abs(oy))
+        px, py = inside(state[0], state[1], ulps_of, basis, ax, ay, dx, dy)
+        ox, oy = ox + px / unit, oy + py / unit
         vertex = certify(
-            c, start, capped, ox, oy, basis, nu, x, y, first, n, sense, ax, ay, dx, dy, out
+            c, start, capped, ox, oy, unit, basis, nu, x, y, first, n, sense, ax, ay, dx, dy, out
         )
         if not out[3] - out[2] > WIDTH:  # good enough, or no point inside
             break
-        place(ox, oy, x, y, first, n, sense, ax, ay, dx, dy)  # more accurate from near by
+        place(ox, oy, unit, x, y, first, n, sense, ax, ay, dx, dy)  # more accurate from near by
     if sense < 0:
         for k in range(3):
             if basis[k] != NONE:

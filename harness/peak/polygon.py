@@ -51,14 +51,23 @@ class Polygon:
 
         See :func:`harness.peak.ascent.greatest_cap`; −1 for no vertex.
         """
-        if self.is_exact:
-            exponent = int(np.frexp(np.abs([self.x, self.y]).max())[1])
-            x, y = np.ldexp(self.x, -exponent), np.ldexp(self.y, -exponent)
-            dx, dy = np.roll(x, -1) - x, np.roll(y, -1) - y
-        else:
-            dx, dy = self.edges_from(self.exact_vertex(0))[2:]
-        level, vertex = greatest_cap(dx, dy, self.n)
+        level, vertex = greatest_cap(*self.directions(), self.n)
         return float(level), int(vertex)
+
+    def directions(self) -> Floats:
+        """The directions of the edges, each as long as a power of two makes it about 1; (2, n).
+
+        Relative errors are those of one rounding, unless an entry is 10³⁰⁰ times the smaller.
+        """
+        if self.is_exact:
+            with np.errstate(over="ignore"):
+                along = np.stack([np.roll(self.x, -1) - self.x, np.roll(self.y, -1) - self.y])
+            if np.isfinite(along).all():
+                return np.ldexp(along, -np.frexp(np.abs(along).max(axis=0))[1])
+        exact = [(b[0] - a[0], b[1] - a[1]) for a, b in self.exact_edges]
+        units = [power_above(max(abs(x), abs(y))) for x, y in exact]
+        pairs = [(x / unit, y / unit) for (x, y), unit in zip(exact, units, strict=True)]
+        return np.array([[nearest(x) for x, _ in pairs], [nearest(y) for _, y in pairs]])
 
     def exact_vertex(self, k: int) -> ExactPoint:
         """Vertex k, exactly."""
@@ -74,8 +83,7 @@ class Polygon:
     def scale(self) -> Any:
         """A power of two a little above the size of the polygon, as a rational."""
         (ox, oy), _ = self.exact_edges[0]
-        size = max(max(abs(x - ox), abs(y - oy)) for (x, y), _ in self.exact_edges)
-        return fmpq(2) ** (int(size.p).bit_length() - int(size.q).bit_length() + 1)
+        return power_above(max(max(abs(x - ox), abs(y - oy)) for (x, y), _ in self.exact_edges))
 
     def edges_from(self, origin: ExactPoint) -> Floats:
         """Starts and directions of the edges from an exact origin, divided by ``scale``; (4, n).
@@ -110,6 +118,11 @@ class Polygon:
         k = len(corners)
         three = [corners[0], corners[k // 3], corners[(2 * k) // 3]]
         return sum((p[0] for p in three), fmpq(0)) / 3, sum((p[1] for p in three), fmpq(0)) / 3
+
+
+def power_above(size: Any) -> Any:
+    """A power of two above a positive rational, but at most four times as large."""
+    return fmpq(2) ** (int(size.p).bit_length() - int(size.q).bit_length() + 1)
 
 
 def nearest(value: Any) -> float:

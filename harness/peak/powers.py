@@ -26,6 +26,8 @@ from harness.geometry.jit import compiled
 
 NONE = -1
 MOST_PIVOTS = 100
+FAINT = 2.0**-960
+"""In coordinates about 1 no product below this is trusted to have a small relative error."""
 GRANTED = 4.0 * 2.0**-53
 """What is granted to rounding, as a part of the size of the products."""
 

@@ -17,7 +17,7 @@ from flint import ctx
 
 from harness.geometry.exact import ExactPoint, fraction, point
 from harness.peak.bounds import SEEN, angle_of, bound_of_start, cotangent_bound, least_angle
-from harness.peak.cavity import certify, inside, place
+from harness.peak.cavity import certify, inside, place, unit_of
 from harness.peak.polygon import Floats, Polygon
 from harness.peak.powers import NONE
 from harness.peak.rational import angle_ball, cap, least_edge, rational_ascent, rational_start
@@ -65,13 +65,14 @@ def _by_doubles(polygon: Polygon, search: Search) -> _Found | None:
     n, x, y = polygon.n, polygon.x, polygon.y
     edges, out = np.empty((4, n)), np.empty(4)
     with np.errstate(over="ignore", invalid="ignore"):
-        ox, oy = float(np.mean(x)), float(np.mean(y))
-        place(ox, oy, x, y, 0, n, 1, *edges)
+        ox, oy, unit = float(np.mean(x)), float(np.mean(y)), unit_of(x, y, 0, n)
+        place(ox, oy, unit, x, y, 0, n, 1, *edges)
         start, capped = polygon.start
         end = search(start, edges)
-        px, py = inside(*end.point[:2], abs(ox) + abs(oy), end.constraints, *edges)
+        px, py = inside(*end.point[:2], unit * (abs(ox) + abs(oy)), end.constraints, *edges)
         vertex = certify(
-            *(end.level, start, capped, ox + px, oy + py, end.constraints, end.multipliers),
+            *(end.level, start, capped, ox + px / unit, oy + py / unit, unit),
+            *(end.constraints, end.multipliers),
             *(x, y, 0, n, 1, *edges, out),
         )
     if not out[3] - out[2] <= WIDTH:
