@@ -26,6 +26,7 @@ import numpy as np
 from harness.geometry.jit import compiled
 from harness.peak.powers import FAINT, NONE, settle
 
+UNTURNED = 8.0 * 2.0**-53
 MOST_STEPS = 200
 CLOSE = 1e-16
 
@@ -37,18 +38,19 @@ def cap_cotangent(ux, uy, vx, vy):
     γ = π − turn, so π − γ/2 = π/2 + turn/2 and its cotangent is −tan(turn/2), written as
     sin/(1 + cos) or (1 − cos)/sin, whichever does not cancel.  The lengths of u and v are no
     matter and are taken out, lest their products leave the range of doubles.  Vectors so short
-    that scaling may have rounded them say nothing.
+    that scaling may have rounded them say nothing, nor do those that turn back so nearly that it
+    may be to either side (γ = 0 or 2π).
     """
     length, width = max(abs(ux), abs(uy)), max(abs(vx), abs(vy))
     if not min(length, width) > FAINT:
         return -np.inf
     ux, uy, vx, vy = ux / length, uy / length, vx / width, vy / width
     sine, cosine = ux * vy - uy * vx, ux * vx + uy * vy
-    if sine == 0.0:
-        return -np.inf if cosine >= 0.0 else np.inf
     size = np.sqrt((ux * ux + uy * uy) * (vx * vx + vy * vy))
     if cosine > 0.0:
         return -sine / (size + cosine)
+    if not abs(sine) > UNTURNED * size:
+        return -np.inf
     return -(size - cosine) / sine
 
 

@@ -96,10 +96,10 @@ def cotangent_bound(c, basis, nu, ax, ay, dx, dy, n):
         total += weight
     value -= 16.0 * ULP * value_size
     s -= 16.0 * ULP * s_size
-    slope = np.sqrt(gx * gx + gy * gy) * (1.0 + 8.0 * ULP) + 16.0 * ULP * g_size
+    slope = np.hypot(gx, gy) * (1.0 + 8.0 * ULP) + 16.0 * ULP * g_size
     if not (s > 0.0 and total > 0.0):
         return -np.inf
-    turn = np.sqrt(hx * hx + hy * hy) * (1.0 + 8.0 * ULP) + 16.0 * ULP * h_size
+    turn = np.hypot(hx, hy) * (1.0 + 8.0 * ULP) + 16.0 * ULP * h_size
     eta = 1.01 * max(0.0, slope * slope / (4.0 * total) - value) / s
     moved = slope + eta * turn
     if np.inf > value + eta * s >= 1.001 * moved * moved / (4.0 * total) + FAINT:

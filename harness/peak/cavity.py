@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from harness.geometry.jit import compiled
-from harness.peak.ascent import ascend, greatest_cap
+from harness.peak.ascent import ascend, cap_cotangent, greatest_cap
 from harness.peak.bounds import SEEN, ULP, angle_of, bound_of_start, cotangent_bound, least_angle
 from harness.peak.powers import FAINT, NONE
 
@@ -109,12 +109,9 @@ def certify(c, start, capped, px, py, unit, basis, nu, x, y, first, n, sense, ax
         k = first + (corner if sense > 0 else (n - corner if corner > 0 else 0))
         place(x[k], y[k], unit, x, y, first, n, sense, ax, ay, dx, dy)
         before = n - 1 if corner == 0 else corner - 1
-        turn = np.arctan2(
-            dx[before] * dy[corner] - dy[before] * dx[corner],
-            dx[before] * dx[corner] + dy[before] * dy[corner],
-        )
+        cap = cap_cotangent(dx[before], dy[before], dx[corner], dy[corner])
         others, edge = least_angle(corner, ax, ay, dx, dy, n)
-        own = 0.5 * (np.pi + turn) - SEEN
+        own = angle_of(cap) - SEEN if cap > -np.inf else -1.0
         reached = min(others, own)
         upper = min(upper, angle_of(cotangent_bound(c, basis, nu, ax, ay, dx, dy, n)))
         if reached > lower:

@@ -16,6 +16,7 @@ import numpy as np
 from flint import ctx
 
 from harness.geometry.exact import ExactPoint, fraction, point
+from harness.peak.ascent import cap_cotangent
 from harness.peak.bounds import SEEN, angle_of, bound_of_start, cotangent_bound, least_angle
 from harness.peak.cavity import certify, inside, place, unit_of
 from harness.peak.polygon import Floats, Polygon
@@ -121,7 +122,9 @@ def _best_of(
         lower, edge = least_angle(corner, *edges, polygon.n)
         constraints: Sequence[int] = end.constraints.tolist()
         if corner != NONE:
-            own = angle_of(_cap_level(edges, corner)) - SEEN
+            dx, dy = edges[2:]
+            cap = cap_cotangent(dx[corner - 1], dy[corner - 1], dx[corner], dy[corner])
+            own = angle_of(cap) - SEEN if cap > -np.inf else -1.0
             constraints = _at_vertex(polygon.n, corner, edge if lower < own else None)
             lower = min(lower, own)
         bound = cotangent_bound(end.level, end.constraints, end.multipliers, *edges, polygon.n)
@@ -136,14 +139,6 @@ def _best_of(
 def _at_vertex(n: int, corner: int, least: int | None) -> list[int]:
     """The constraints of a peak in a vertex: its two edges, and one that is seen under less."""
     return [2 * ((corner - 1) % n), 2 * corner, *([] if least is None else [2 * int(least)])]
-
-
-def _cap_level(edges: Floats, corner: int) -> float:
-    """cot(π − γ/2) at a vertex, in doubles."""
-    from harness.peak.ascent import cap_cotangent
-
-    dx, dy = edges[2:]
-    return float(cap_cotangent(dx[corner - 1], dy[corner - 1], dx[corner], dy[corner]))
 
 
 def _moved(polygon: Polygon, origin: ExactPoint, x: float, y: float) -> ExactPoint:

@@ -25,6 +25,25 @@ MOST_STEPS = 4000
 
 
 @dataclass(frozen=True)
+class Tight:
+    """An optimum at one level: its tight ``rows`` with their multipliers, a disc first.
+
+    ``t``: the greatest disc less |p|² there.
+    """
+
+    t: Any
+    point: ExactPoint
+    rows: tuple[int, ...]
+    weights: tuple[Any, ...]
+
+    @property
+    def value(self) -> Any:
+        """M, the power of the point to the greatest disc."""
+        x, y = self.point
+        return x * x + y * y + self.t
+
+
+@dataclass(frozen=True)
 class RationalAscent:
     """An end: c ≤ c*, and a point p of the closed kernel near which ``reached`` ≥ c* is reached.
 
@@ -56,29 +75,30 @@ def row_of(edges: Sequence[Edge], constraint: int, c: Any) -> Row:
     return c * dy - ax - bx, -c * dx - ay - by, ax * bx + ay * by - c * area, True
 
 
-def least_power(rows: Sequence[Row]) -> tuple[Any, ExactPoint, tuple[int, ...]] | None:
-    """(M, point, positions of a basis): the least of the greatest disc, inside the walls.
+def least_power(rows: Sequence[Row]) -> Tight | None:
+    """The least of the greatest disc, inside the walls.
 
     Exact, by trying all subsets; O(m⁴) for m rows.  None if the walls leave nothing.
     """
     for size in (1, 2, 3):
         for subset in combinations(range(len(rows)), size):
-            solved = _tight([rows[k] for k in subset])
-            if solved is None:
+            found = _tight(rows, subset)
+            if found is None:
                 continue
-            t, x, y = solved
-            if all(g * x + h * y + r <= (t if disc else 0) for g, h, r, disc in rows):
-                return x * x + y * y + t, (x, y), subset
+            x, y = found.point
+            if all(g * x + h * y + r <= (found.t if disc else 0) for g, h, r, disc in rows):
+                return found
     return None
 
 
-def _tight(rows: list[Row]) -> tuple[Any, Any, Any] | None:
-    """(t, x, y) of the least with these rows tight, if their multipliers are not negative."""
-    rows = sorted(rows, key=lambda row: not row[3])
-    g, h, r, is_disc = rows[0]
+def _tight(rows: Sequence[Row], subset: tuple[int, ...]) -> Tight | None:
+    """The least with these rows tight, if their multipliers are not negative."""
+    order = sorted(subset, key=lambda k: not rows[k][3])
+    g, h, r, is_disc = rows[order[0]]
     if not is_disc:
         return None
-    lines = [(a - g, b - h, e - r) if disc else (a, b, e) for a, b, e, disc in rows[1:]]
+    others = [rows[k] for k in order[1:]]
+    lines = [(a - g, b - h, e - r) if disc else (a, b, e) for a, b, e, disc in others]
     if not lines:
         x, y, weights = -g / 2, -h / 2, []
     elif len(lines) == 1:
@@ -96,10 +116,10 @@ def _tight(rows: list[Row]) -> tuple[Any, Any, Any] | None:
         x, y = (b * o - e * m) / det, (e * k - a * o) / det
         s, t = -2 * x - g, -2 * y - h
         weights = [(s * m - t * k) / det, (a * t - b * s) / det]
-    discs = sum((w for w, row in zip(weights, rows[1:], strict=True) if row[3]), fmpq(0))
+    discs = sum((w for w, row in zip(weights, others, strict=True) if row[3]), fmpq(0))
     if discs > 1 or any(w < 0 for w in weights):
         return None
-    return g * x + h * y + r, x, y
+    return Tight(g * x + h * y + r, (x, y), tuple(order), (1 - discs, *weights))
 
 
 def rational_ascent(
@@ -108,48 +128,91 @@ def rational_ascent(
     """The ascent from the rational level ``start`` ≤ c* until level and reach agree.
 
     ``edges``: counter-clockwise, around a kernel with interior; ``bits``: how closely, relative to
-    1 + |c|; ``first``: edges to begin with.  A few hundred operations for each edge.
+    1 + |c|; ``first``: edges to begin with.  The next level is Newton's, for −Σ ν_i L_i(p) is the
+    derivative of M; every third one, and where that leaves what is known, it lies in the middle
+    of what is known.  A level counts as ≤ c* only after M > 0 has been found there.  A few hundred
+    operations for each edge.
 
     Raises ArithmeticError if it does not come to an end.
     """
     active = sorted({2 * i for i in first} or {0})
     least = fmpq(1, 1 << bits)
-    c, best = start, None
+    low, c, best, basis = start, start, None, ()
+    levels = 0
     for _ in range(MOST_STEPS):
-        solved = least_power([row_of(edges, k, c) for k in active])
-        if solved is None:
+        found = least_power([row_of(edges, k, c) for k in active])
+        if found is None:
             raise ArithmeticError("the walls leave nothing: the kernel has no interior")
-        value, p, subset = solved
-        basis = tuple(active[k] for k in subset)
-        violated = _most_violated(edges, c, p, value)
+        basis = tuple(active[k] for k in found.rows)
+        violated = _most_violated(edges, c, found)
         if violated is not None:
             active = sorted({*basis, violated})
             continue
-        for q, vertex in _candidates(edges, basis, p):
+        active = list(basis)
+        for q, vertex in _candidates(edges, basis, found.point):
             reached = reach(edges, q, vertex, bits)
             if reached is not None and (best is None or reached < best.reached):
                 best = RationalAscent(c, reached, q, basis, vertex)
-        if best is not None and best.reached - c <= (1 + abs(c)) * least:
-            break
-        rise = _rise(edges, basis, value, c, p, bits)
-        if not rise > (1 + abs(c)) * least * least:
-            break
-        active = list(basis)
-        c += rise
-    if best is None:
-        raise ArithmeticError("the ascent found no point inside")
-    return replace(best, level=c, basis=basis)
+        if found.value > 0:
+            low = c
+        if best is not None and best.reached - low <= (1 + abs(low)) * least:
+            return replace(best, level=low, basis=basis)
+        levels += 1
+        newton = None if levels % 3 == 0 else _newton(edges, basis, found, c, least)
+        high = None if best is None else best.reached
+        with ctx.workprec(2 * bits + 64):  # short numbers, or they grow with every level
+            c = rational_bounds(arb(_between(low, high, newton)))[0]
+    raise ArithmeticError("the ascent did not come to an end")
 
 
-def _most_violated(edges: Sequence[Edge], c: Any, p: ExactPoint, value: Any) -> int | None:
-    """The disc that p violates most, else such a wall, else None."""
-    found = [forms(edge, p) for edge in edges]
-    excess = [q - c * level for q, level in found]
+def _newton(
+    edges: Sequence[Edge], basis: tuple[int, ...], found: Tight, c: Any, least: Any
+) -> Any | None:
+    """The level at which M would vanish if it were linear, a quarter of ``least`` on or more.
+
+    So near the end it steps over c*, and the point found there closes the gap from above.
+    """
+    slope = sum(
+        (
+            weight * forms(edges[k >> 1], found.point)[1]
+            for k, weight in zip(basis, found.weights, strict=True)
+            if not k & 1
+        ),
+        fmpq(0),
+    )
+    if slope <= 0:
+        return None
+    step, shortest = found.value / slope, (1 + abs(c)) * least / 4
+    return c + (max(step, shortest) if found.value > 0 else min(step, -shortest))
+
+
+def _between(low: Any, high: Any | None, proposed: Any | None) -> Any:
+    """The proposed level if it lies between the bounds, else one in the middle.
+
+    The middle is that of the sizes if the upper bound is large, and beyond all of them if there
+    is none.
+    """
+    if proposed is not None and low < proposed and (high is None or proposed < high):
+        return proposed
+    size = 1 + abs(low)
+    if high is None:
+        return low + 4 * size
+    if high - low < 4 * size:
+        return (low + high) / 2
+    ratio = (high - low) / size
+    doublings = int(ratio.p).bit_length() - int(ratio.q).bit_length()
+    return low + size * fmpq(2) ** (doublings // 2)
+
+
+def _most_violated(edges: Sequence[Edge], c: Any, found: Tight) -> int | None:
+    """The disc that the point violates most, else such a wall, else None."""
+    values = [forms(edge, found.point) for edge in edges]
+    excess = [q - c * level for q, level in values]
     worst = max(range(len(edges)), key=excess.__getitem__)
-    if excess[worst] > value:
+    if excess[worst] > found.value:
         return 2 * worst
-    deepest = min(range(len(edges)), key=lambda i: found[i][1])
-    return 2 * deepest + 1 if found[deepest][1] < 0 else None
+    deepest = min(range(len(edges)), key=lambda i: values[i][1])
+    return 2 * deepest + 1 if values[deepest][1] < 0 else None
 
 
 def _candidates(
@@ -222,50 +285,3 @@ def rational_bounds(ball: arb) -> tuple[Any, Any]:
         mantissa, exponent = end.man_exp()
         ends.append(fmpq(mantissa) * fmpq(2) ** int(exponent))
     return ends[0], ends[1]
-
-
-def _rise(
-    edges: Sequence[Edge], basis: tuple[int, ...], value: Any, c: Any, p: ExactPoint, bits: int
-) -> Any:
-    """A step to a higher level ≤ c*, rounded down: see :func:`harness.peak.ascent.rise`."""
-    if value <= 0:
-        return fmpq(0)
-    rows = [row_of(edges, k, c) for k in basis]
-    s = hx = hy = fmpq(0)
-    for constraint, weight in zip(basis, _multipliers(rows, p), strict=True):
-        (ax, ay), (bx, by) = edges[constraint >> 1]
-        if constraint & 1:
-            weight = weight / c if c > 0 else fmpq(0)
-        else:
-            s += weight * forms(edges[constraint >> 1], p)[1]
-        hx -= weight * (by - ay)
-        hy += weight * (bx - ax)
-    with ctx.workprec(2 * bits + 64):
-        step = 2 * arb(value) / (arb(s) + (arb(s * s + value * (hx * hx + hy * hy))).sqrt())
-        return max(rational_bounds(step)[0], fmpq(0)) if step.is_finite() else fmpq(0)
-
-
-def _multipliers(rows: list[Row], p: ExactPoint) -> list[Any]:
-    """The multipliers of tight rows at their optimum p (in the order given)."""
-    order = sorted(range(len(rows)), key=lambda k: not rows[k][3])
-    g, h, _, _ = rows[order[0]]
-    x, y = p
-    s, t = -2 * x - g, -2 * y - h
-    lines = [
-        (rows[k][0] - g, rows[k][1] - h) if rows[k][3] else (rows[k][0], rows[k][1])
-        for k in order[1:]
-    ]
-    if not lines:
-        found = []
-    elif len(lines) == 1:
-        ((a, b),) = lines
-        found = [(s * a + t * b) / (a * a + b * b)]
-    else:
-        (a, b), (k, m) = lines
-        det = a * m - b * k
-        found = [(s * m - t * k) / det, (a * t - b * s) / det]
-    discs = sum((w for w, k in zip(found, order[1:], strict=True) if rows[k][3]), fmpq(0))
-    result = [fmpq(0)] * len(rows)
-    for w, k in zip([1 - discs, *found], order, strict=True):
-        result[k] = w
-    return result
