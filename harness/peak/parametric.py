@@ -21,6 +21,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from harness.errors import UserError
 from harness.peak.circles import Floats, Ints, crossing, crossing_margin, of_edges, ordinate
 from harness.peak.discs import Booleans, Vertices, intersect
 from harness.peak.polygon import Polygon
@@ -37,6 +38,7 @@ HALVINGS = 60
 CLOSED = 1e-14
 """The width of the interval, relative to 1 + |c|, below which decisions would be rounding."""
 ROUNDS = 30
+RECENTRED = 4
 NEAR = 1e-5
 """How far, in radians, the search may end from the proven angle.  Where the optimum is close to a
 vertex, M(c) vanishes almost quadratically, and decisions are as accurate as the square root of
@@ -55,25 +57,27 @@ def parametric_peak(polygon: Polygon) -> Peak:
     """The peak by parametric search.
 
     ``facts``: ``decisions``, each O(n) expected; ``comparisons``; ``batches`` of them;
-    ``critical`` values.  Raises as :func:`harness.peak.proof.prove`, and ArithmeticError if the
-    search ends at another level than that of the peak.
+    ``critical`` values.  Raises as :func:`harness.peak.proof.prove`, and
+    :class:`harness.errors.UserError` if the search ends at another level than that of the peak,
+    even when begun again from where it ended.
     """
-    facts: dict[str, int] = {}
-    ends: list[float] = []
-
-    def look(start: float, edges: Floats) -> Ascent:
-        search = Search(start, edges)
+    origin = polygon.inner_point()
+    for _ in range(RECENTRED):
+        search = Search(polygon.start[0], polygon.edges_from(origin))
         among = search.run()
-        facts.update(search.facts)
-        ends.append(float(np.arctan2(1.0, search.high)))
-        return ascent_over(start, edges, among)
 
-    found = prove(polygon, look, "parametric", facts)
-    if abs(found.angle - ends[-1]) > NEAR:
-        raise ArithmeticError(
-            f"{polygon.instance.label}: the search ends at {ends[-1]}, the peak is {found.angle}"
-        )
-    return found
+        def look(start: float, edges: Floats, among: Ints = among) -> Ascent:
+            return ascent_over(start, edges, among)
+
+        found = prove(polygon, look, "parametric", search.facts)
+        end = float(np.arctan2(1.0, search.high))
+        if abs(found.angle - end) <= NEAR:
+            return found
+        origin = polygon.moved(origin, *search.point)  # more accurate from near by
+    raise UserError(
+        f"{polygon.instance.label}: parametric search in doubles ends at {end!r}, but the proven "
+        f"angle is {found.angle!r}: the kernel is too thin for it, use the method lp"
+    )
 
 
 class Search:
@@ -86,25 +90,37 @@ class Search:
         self.facts = dict.fromkeys(("decisions", "comparisons", "batches", "critical"), 0)
         self._state, self._basis = np.zeros(3), np.full(4, NONE)
         self._best = self._basis.copy()
+        self._shift = (0.0, 0.0)
+
+    @property
+    def point(self) -> tuple[float, float]:
+        """Where the last decision was taken, from the origin of the edges as given."""
+        return self._shift[0] + float(self._state[0]), self._shift[1] + float(self._state[1])
 
     def run(self) -> Ints:
         """Search; the edges of the basis at c*."""
-        if not self.decide(self.low):
-            self._bracket()
-            try:
-                intersect(self.edges.shape[1], self)
-                self._close()
-            except _ClosedError:
-                pass
+        with np.errstate(over="ignore", invalid="ignore"):  # far circles are no matter
+            if not self.decide(self.low):
+                self._search()
         basis = self._best[:3]
         return np.unique(basis[basis != NONE] >> 1)
+
+    def _search(self) -> None:
+        """Shrink the interval to nothing."""
+        try:
+            self._bracket()
+            intersect(self.edges.shape[1], self)
+            self._close()
+        except _ClosedError:
+            pass
 
     def decide(self, level: float) -> bool:
         """Whether the discs of this level and the kernel have a common point, i. e. c* ≤ level."""
         self.facts["decisions"] += 1
         room, chosen = np.zeros((4, 4)), np.zeros(3, dtype=np.int64)
         n = self.edges.shape[1]
-        settle(level, self._state, self._basis, np.zeros(3), room, chosen, *self.edges, n)
+        for _ in range(2):  # again from where it ended: more accurate from near by
+            settle(level, self._state, self._basis, np.zeros(3), room, chosen, *self.edges, n)
         common = bool(self._state[2] <= 0.0)
         if common or self.high == self.low:
             self._best = self._basis.copy()
@@ -119,6 +135,7 @@ class Search:
             if not step < 1e300:
                 raise _ClosedError
         self.high = self.low + step
+        self._shift = self.point
         self.edges[0] -= self._state[0]
         self.edges[1] -= self._state[1]
         self._state[:2] = 0.0

@@ -105,6 +105,11 @@ class Polygon:
             ]
         )
 
+    def moved(self, origin: ExactPoint, x: float, y: float) -> ExactPoint:
+        """An exact origin plus a vector in units of ``scale``."""
+        step = point((x, y))
+        return origin[0] + step[0] * self.scale, origin[1] + step[1] * self.scale
+
     def inner_point(self) -> ExactPoint:
         """A point in the interior of the kernel, exactly.  O(n log n).
 

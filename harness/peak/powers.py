@@ -55,7 +55,11 @@ def one(row, i):
 
 @compiled
 def two(row, i, j):
-    """(value, x, y, ν_i, ν_j) with row i (a disc) and row j tight; value −∞ unless ν ≥ 0."""
+    """(value, x, y, ν_i, ν_j) with row i (a disc) and row j tight; value −∞ unless ν ≥ 0.
+
+    The point is the foot of the centre on the line where both are tight, as a sum of a vector
+    across and one along: a rounded step along leaves both tight, however near the origin is.
+    """
     a, b, e = row[j, 0], row[j, 1], row[j, 2]
     if row[j, 3] > 0.0:
         a, b, e = a - row[i, 0], b - row[i, 1], e - row[i, 2]
@@ -64,7 +68,8 @@ def two(row, i, j):
     rest = 1.0 - nu * row[j, 3]
     if not (nu >= 0.0 and rest >= 0.0 and square > 0.0):
         return -np.inf, 0.0, 0.0, 0.0, 0.0
-    x, y = -0.5 * (row[i, 0] + nu * a), -0.5 * (row[i, 1] + nu * b)
+    across, along = -e / square, 0.5 * (row[i, 0] * b - row[i, 1] * a) / square
+    x, y = across * a - along * b, across * b + along * a
     return x * x + y * y + row[i, 0] * x + row[i, 1] * y + row[i, 2], x, y, rest, nu
 
 

@@ -95,7 +95,7 @@ def _around_exact_points(polygon: Polygon, search: Search) -> _Found:
         if not np.isfinite(end.point).all():
             break
         px, py = inside(*end.point[:2], 0.0, end.constraints, *edges)
-        origin = _moved(polygon, origin, float(px), float(py))
+        origin = polygon.moved(origin, float(px), float(py))
         named = [int(k) >> 1 for k in end.constraints if k != NONE]
         best = _best_of(polygon, origin, end, start, capped, best)
         if best is not None and best.is_certified:
@@ -139,12 +139,6 @@ def _best_of(
 def _at_vertex(n: int, corner: int, least: int | None) -> list[int]:
     """The constraints of a peak in a vertex: its two edges, and one that is seen under less."""
     return [2 * ((corner - 1) % n), 2 * corner, *([] if least is None else [2 * int(least)])]
-
-
-def _moved(polygon: Polygon, origin: ExactPoint, x: float, y: float) -> ExactPoint:
-    """The origin plus a vector in units of the polygon's scale."""
-    step = point((x, y))
-    return origin[0] + step[0] * polygon.scale, origin[1] + step[1] * polygon.scale
 
 
 def _by_rationals(polygon: Polygon, capped: int, named: list[int]) -> _Found:

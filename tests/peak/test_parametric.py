@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 
+from harness.errors import UserError
 from harness.geometry.instance import Instance
 from harness.peak import meet, peak
 from harness.peak.parametric import Search
@@ -88,5 +89,5 @@ def test_a_search_that_ends_elsewhere_is_found_out(monkeypatch):
         return right(self, level - 0.1)
 
     monkeypatch.setattr(Search, "decide", wrong)
-    with pytest.raises(ArithmeticError, match="the search ends at"):
+    with pytest.raises(UserError, match="search in doubles ends at"):
         peak(vertices, "parametric")
