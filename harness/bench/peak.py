@@ -16,7 +16,7 @@ from harness.bench.timing import seconds_of, timed
 from harness.geometry.instance import Instance
 from harness.geometry.visual_angle import visual_angle
 from harness.peak import peak, peaks
-from harness.peak.diagram import FEW
+from harness.peak.candidates import FEW
 from harness.peak.result import METHODS, WIDTH
 from harness.study.limits import Limits, peak_mib
 

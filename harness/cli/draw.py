@@ -47,7 +47,7 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument(
         "--peak",
         action="store_true",
-        help="mark the point of best visual angle (max-min; with --objective largest min-max)",
+        help="mark the kernel's point of best visual angle (with --objective largest: min-max)",
     )
     parser.add_argument("--no-nodes", action="store_true", help="leave out the marks of nodes")
     parser.add_argument("--title", metavar="TEXT", help="default: the name of the instance")

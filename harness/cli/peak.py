@@ -51,7 +51,9 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         help="also the cotangent of the angle as an algebraic number, and all edges that tie",
     )
     parser.add_argument(
-        "--builder", choices=BUILDERS, help="of the diagram (default: the one that suits n)"
+        "--builder",
+        choices=BUILDERS,
+        help="of the diagram, if one is built (default: the one that suits n)",
     )
     parser.add_argument(
         "--seed", type=int, default=0, help="of random samples; the result does not depend on it"

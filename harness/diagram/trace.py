@@ -41,13 +41,19 @@ class ExactPlace:
         return self.scene.floats(self.point)
 
     def enclosure(self, bits: int) -> tuple[RationalPoint, RationalPoint]:
-        """Rational corners of a box around the point, computed with ``bits`` bits."""
-        with ctx.workprec(bits):
-            u, v = self.point.balls(bits)
-            x = (u - self.scene.shear * v) / self.scene.scale
-            y = v / self.scene.scale
-            low = (_fraction(x.lower()), _fraction(y.lower()))
-            return low, (_fraction(x.upper()), _fraction(y.upper()))
+        """Rational corners of a box around the point, computed with ``bits`` bits.
+
+        Or with as many more as make the box finite.
+        """
+        while True:
+            with ctx.workprec(bits):
+                u, v = self.point.balls(bits)
+                x = (u - self.scene.shear * v) / self.scene.scale
+                y = v / self.scene.scale
+                if x.is_finite() and y.is_finite():
+                    low = (_fraction(x.lower()), _fraction(y.lower()))
+                    return low, (_fraction(x.upper()), _fraction(y.upper()))
+            bits *= 2
 
 
 def _fraction(value: arb) -> Fraction:

@@ -32,7 +32,8 @@ class Peaks:
     ``vertices``: (k,), the vertex that the point is, −1 where it is none; the angle is then a
     limit, approached but not reached.  ``status``: (k,), 0 where bounds − angles ≤ 1e-12 (what
     doubles prove), 1 where they are further apart or the kernel has no interior, 2 where there is
-    no polygon: fewer than three vertices, equal neighbours, no area, a value that is not finite.
+    no polygon: fewer than three vertices, equal neighbours, no area, a value that is not finite,
+    or one that certainly winds around more than once.
     """
 
     points: Floats
@@ -58,8 +59,11 @@ def peaks(
     microsecond or two for a hexagon.
 
     Raises:
-        UserError: shapes that do not fit, offsets that decrease or leave the array.
+        UserError: what is no array of numbers, shapes that do not fit, offsets that decrease or
+            leave the array, fewer than one worker.
     """
+    if workers is not None and workers < 1:
+        raise UserError(f"at least one worker is needed, not {workers}")
     xy, starts = _checked(vertices, offsets)
     x, y = np.ascontiguousarray(xy[:, 0]), np.ascontiguousarray(xy[:, 1])
     k = len(starts) - 1
@@ -87,18 +91,21 @@ def peaks(
 
 def _checked(vertices: npt.ArrayLike, offsets: npt.ArrayLike | None) -> tuple[Floats, Ints]:
     """Coordinates of shape (m, 2) and valid offsets."""
-    xy = np.asarray(vertices, dtype=np.float64)
+    try:
+        xy = np.asarray(vertices, dtype=np.float64)
+        starts = np.asarray([] if offsets is None else offsets)
+    except (TypeError, ValueError) as problem:
+        raise UserError(f"vertices and offsets must be arrays of numbers: {problem}") from None
     if offsets is None:
         if xy.ndim != 3 or xy.shape[2] != 2:
             raise UserError(f"vertices without offsets need the shape (k, n, 2), not {xy.shape}")
         starts = np.arange(len(xy) + 1) * xy.shape[1]
         return xy.reshape(-1, 2), starts
-    starts = np.asarray(offsets)
     if xy.ndim != 2 or xy.shape[1] != 2:
         raise UserError(f"vertices with offsets need the shape (m, 2), not {xy.shape}")
     if starts.ndim != 1 or not len(starts) or not np.issubdtype(starts.dtype, np.integer):
         raise UserError("offsets must be a sequence of whole numbers, one more than polygons")
-    falls = np.flatnonzero(np.diff(starts) < 0)
+    falls = np.flatnonzero(starts[1:] < starts[:-1])  # a difference may wrap around
     if starts[0] < 0 or starts[-1] > len(xy) or len(falls):
         where = f"decrease at index {falls[0] + 1}" if len(falls) else "leave the array"
         raise UserError(f"offsets {where}")

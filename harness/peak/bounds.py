@@ -23,7 +23,6 @@ products make 8u for Q and L each relative to |a||b|, the arc tangent and its qu
 the least angle by its rounded cotangent 2u; the rest is a reserve."""
 
 
-
 @compiled
 def least_angle(corner, ax, ay, dx, dy, n):
     """The least visual angle of the n edges from the origin, less its error, and its edge.

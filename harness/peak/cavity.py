@@ -13,7 +13,8 @@ from harness.peak.powers import FAINT, NONE
 
 CERTIFIED, OPEN, IMPROPER = 0, 1, 2
 """The bounds are close enough; they are not (or the kernel has no interior); no polygon at all:
-fewer than three vertices, two equal neighbours, no area, or coordinates that are not finite."""
+fewer than three vertices, two equal neighbours, no area, coordinates that are not finite, or
+bounds that contradict each other, as only those of a polygon that winds around twice can."""
 WIDTH = 1e-12
 """The greatest difference between the proven bounds of a certified angle, in radians."""
 STEP_INSIDE = 2.0**-50
@@ -87,8 +88,8 @@ def inside(px, py, ulps_of, basis, ax, ay, dx, dy):
 def certify(c, start, capped, px, py, unit, basis, nu, x, y, first, n, sense, ax, ay, dx, dy, out):
     """Fill ``out`` = (x, y, lower, upper) near (px, py); the vertex that the point is, or −1.
 
-    ``unit``: see :func:`place`.  ``start``: the level at which the ascent began, which bounds the angle from above; ``capped``:
-    the vertex whose cap that is (−1: none).  A vertex counts as a point at which its two edges
+    ``unit``: see :func:`place`.  ``start``: the level at which the ascent began, which bounds the
+    angle from above; ``capped``: the vertex whose cap that is (−1: none).  A vertex counts as a point at which its two edges
     are seen under its cap (the limit along the best direction); the basis then becomes these two
     edges and, if it is seen under less, a third.
     """
@@ -173,4 +174,8 @@ def peak_of(x, y, first, n, space, basis, nu, row, chosen, out):
                 basis[k] = 2 * (n - 1 - (basis[k] >> 1)) + (basis[k] & 1)
         if vertex > 0:
             vertex = n - vertex
+    if out[3] < out[2]:  # all edges are seen under more than 2π/n: once around is less
+        out[:] = np.nan
+        basis[:] = NONE
+        return IMPROPER, NONE
     return (CERTIFIED if out[3] - out[2] <= WIDTH else OPEN), vertex

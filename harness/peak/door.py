@@ -42,6 +42,8 @@ def peak(
     if method is not None and method not in METHODS:
         raise UserError(f"unknown method {method!r}: choose from {', '.join(METHODS)}")
     instance = polygon if isinstance(polygon, Instance) else _validated(polygon)
+    if seed < 0:
+        raise UserError(f"the seed must not be negative, and is {seed}")
     if objective == "min-max":
         if method not in (None, "diagram"):
             raise UserError(f"the objective min-max has the method diagram only, not {method}")

@@ -63,7 +63,7 @@ class Polygon:
             with np.errstate(over="ignore"):
                 along = np.stack([np.roll(self.x, -1) - self.x, np.roll(self.y, -1) - self.y])
             if np.isfinite(along).all():
-                return np.ldexp(along, -np.frexp(np.abs(along).max(axis=0))[1])
+                return np.asarray(np.ldexp(along, -np.frexp(np.abs(along).max(axis=0))[1]))
         exact = [(b[0] - a[0], b[1] - a[1]) for a, b in self.exact_edges]
         units = [power_above(max(abs(x), abs(y))) for x, y in exact]
         pairs = [(x / unit, y / unit) for (x, y), unit in zip(exact, units, strict=True)]

@@ -137,7 +137,8 @@ def rational_ascent(
     """
     active = sorted({2 * i for i in first} or {0})
     least = fmpq(1, 1 << bits)
-    low, c, best, basis = start, start, None, ()
+    low, c, best = start, start, None
+    basis: tuple[int, ...]
     levels = 0
     for _ in range(MOST_STEPS):
         found = least_power([row_of(edges, k, c) for k in active])

@@ -14,7 +14,6 @@ bisector: a local maximum or minimum along it, but no maximum in the plane.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 from flint import arb
@@ -24,38 +23,51 @@ from harness.peak.rational import Edge
 Ball = Any
 
 
-def tangencies(edge: Edge, other: Edge, sign: int) -> Iterator[tuple[Ball, Ball, Ball]]:
+def tangencies(edge: Edge, other: Edge, sign: int) -> list[tuple[Ball, Ball, Ball]] | None:
     """(c, x, y) in balls where the circles of two edges touch, from outside (1) or inside (−1).
 
-    At most two; none for edges with a common endpoint, as all their circles meet there.  Edges in
-    exact coordinates, the domain to their left; the precision is that of flint's context.  Edges
-    of equal length (to that precision) do not touch from inside.
+    At most two; none for edges with a common endpoint, as all their circles meet there, nor from
+    inside for edges of equal length.  Edges in exact coordinates, the domain to their left; the
+    precision is that of flint's context.  None if it does not suffice to enclose all of them.
     """
     if {edge[0], edge[1]} & {other[0], other[1]}:
-        return
-    (mx, my, hx, hy, length), (nx, ny, kx, ky, width) = _circle(edge), _circle(other)
+        return []
+    (mx, my, hx, hy, first), (nx, ny, kx, ky, second) = _circle(edge), _circle(other)
+    if sign < 0 and first == second:
+        return []
+    length, width = arb(first).sqrt(), arb(second).sqrt()
     s = (length + sign * width) / 2
     dx, dy, ex, ey = nx - mx, ny - my, kx - hx, ky - hy
-    a = ex * ex + ey * ey - s * s
-    b = dx * ex + dy * ey
-    d = dx * dx + dy * dy - s * s
-    for c in _roots(a, b, d):
-        t = length / (length + sign * width)
-        if t.is_finite():
-            x, y = mx + c * hx, my + c * hy
-            yield c, x + t * (nx + c * kx - x), y + t * (ny + c * ky - y)
+    lead = 4 * (ex * ex + ey * ey) - first - second  # ± 2 l_i l_j if c² has the coefficient 0
+    is_linear = sign * lead >= 0 and lead * lead == 4 * first * second
+    roots = _roots(
+        arb(0) if is_linear else arb(ex * ex + ey * ey) - s * s,
+        arb(dx * ex + dy * ey),
+        arb(dx * dx + dy * dy) - s * s,
+    )
+    t = length / (length + sign * width)
+    if roots is None or not t.is_finite():
+        return None
+    found = []
+    for c in roots:
+        x, y = mx + c * hx, my + c * hy
+        found.append((c, x + t * (nx + c * kx - x), y + t * (ny + c * ky - y)))
+    return found
 
 
-def _circle(edge: Edge) -> tuple[Ball, Ball, Ball, Ball, Ball]:
-    """Midpoint, half the inner normal, length."""
+def _circle(edge: Edge) -> tuple[Any, Any, Any, Any, Any]:
+    """Midpoint, half the inner normal, the square of the length."""
     (ax, ay), (bx, by) = edge
     dx, dy = bx - ax, by - ay
-    length = arb(dx * dx + dy * dy).sqrt()
-    return arb((ax + bx) / 2), arb((ay + by) / 2), arb(-dy / 2), arb(dx / 2), length
+    return (ax + bx) / 2, (ay + by) / 2, -dy / 2, dx / 2, dx * dx + dy * dy
 
 
-def _roots(a: Ball, b: Ball, d: Ball) -> list[Ball]:
-    """The real roots of a c² + 2 b c + d; a double root counts if it cannot be excluded."""
+def _roots(a: Ball, b: Ball, d: Ball) -> list[Ball] | None:
+    """The real roots of a c² + 2 b c + d; a double root counts if it cannot be excluded.
+
+    ``a`` = 0 exactly leaves a linear equation, where ``b`` is 0 exactly or does not contain it.
+    None if an enclosure is not finite.
+    """
     square = b * b - a * d
     if square < 0:
         return []
@@ -66,7 +78,7 @@ def _roots(a: Ball, b: Ball, d: Ball) -> list[Ball]:
     if b > 0:
         root = -root
     w = root - b  # the sum that does not cancel
-    found = [d / w if not w.contains(0) else -b / a]
-    if not a.contains(0):
-        found.append(w / a)
-    return [c for c in found if c.is_finite()]
+    if a == 0:
+        return [-d / (2 * b)] if b != 0 else []
+    found = [d / w if not w.contains(0) else -b / a, w / a]
+    return found if all(c.is_finite() for c in found) else None

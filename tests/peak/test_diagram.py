@@ -12,7 +12,7 @@ from scipy.optimize import minimize
 from harness.geometry.instance import Instance
 from harness.geometry.visual_angle import L, visual_angle
 from harness.peak import peak
-from harness.peak.diagram import built
+from harness.peak.candidates import built
 from harness.peak.polygon import Polygon
 from harness.peak.tangency import tangencies
 from tests import strategies
@@ -101,9 +101,9 @@ def test_where_a_polygon_is_does_not_matter(name, shift, options):
 def test_a_diagram_that_lacks_the_best_vertex_is_found_out(monkeypatch):
     from harness.peak import diagram
 
-    whole = diagram._ends
-    monkeypatch.setattr(diagram, "_ends", lambda *arguments: list(whole(*arguments))[1:])
-    monkeypatch.setattr(diagram, "tangent_points", lambda *_: [])
+    whole = diagram.node_candidates
+    monkeypatch.setattr(diagram, "node_candidates", lambda *given: list(whole(*given))[1:])
+    monkeypatch.setattr(diagram, "touching_candidates", lambda *_: [])
     told = [told_by(generated("near-regular", 5, seed).tolist()) for seed in range(8)]
     assert None in told
     assert any(told)
