@@ -29,8 +29,8 @@ def unit_of(x, y, first, n):
     """
     size = 0.0
     for k in range(first, first + n):
-        size = max(size, abs(0.5 * x[k] - 0.5 * x[first]), abs(0.5 * y[k] - 0.5 * y[first]))
-    exponent = math.frexp(size)[1] + 1
+        size = max(size, abs(x[k] - x[first]), abs(y[k] - y[first]))
+    exponent = math.frexp(size)[1] if size < np.inf else 1025
     return math.ldexp(1.0, min(max(-exponent, -1020), 1020))
 
 
@@ -89,9 +89,9 @@ def certify(c, start, capped, px, py, unit, basis, nu, x, y, first, n, sense, ax
     """Fill ``out`` = (x, y, lower, upper) near (px, py); the vertex that the point is, or −1.
 
     ``unit``: see :func:`place`.  ``start``: the level at which the ascent began, which bounds the
-    angle from above; ``capped``: the vertex whose cap that is (−1: none).  A vertex counts as a point at which its two edges
-    are seen under its cap (the limit along the best direction); the basis then becomes these two
-    edges and, if it is seen under less, a third.
+    angle from above; ``capped``: the vertex whose cap that is (−1: none).  A vertex counts as a
+    point at which its two edges are seen under its cap (the limit along the best direction); the
+    basis then becomes these two edges and, if it is seen under less, a third.
     """
     place(px, py, unit, x, y, first, n, sense, ax, ay, dx, dy)
     upper = bound_of_start(start)
