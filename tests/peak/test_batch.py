@@ -138,6 +138,12 @@ def test_the_number_of_workers_changes_nothing():
     assert (one.angles == two.angles).all()
 
 
+@pytest.mark.parametrize("workers", [0, -2])
+def test_somebody_must_work(workers):
+    with pytest.raises(UserError, match="at least one worker"):
+        peaks(np.zeros((1, 4, 2)), workers=workers)
+
+
 def test_nothing_is_no_trouble():
     assert len(peaks(np.empty((0, 2)), [0]).angles) == 0
 
@@ -150,6 +156,12 @@ def test_nothing_is_no_trouble():
         (np.zeros((4, 2)), [0, 3, 2], "decrease at index 2"),
         (np.zeros((4, 2)), [0, 5], "leave"),
         (np.zeros((4, 2)), [0.0, 4.0], "whole numbers"),
+        (np.zeros((4, 2)), [-1, 4], "leave"),
+        (np.zeros((4, 2)), [], "whole numbers"),
+        (np.zeros((4, 2)), np.array([0, 9, 4], dtype=np.uint64), "decrease at index 2"),
+        (np.zeros((4, 2)), np.array([0, 2**63 + 5], dtype=np.uint64), "leave"),
+        ([[(0, 0), (1, 0)], [(1, 1)]], None, "arrays of numbers"),
+        ([["here", "there"]], [0, 1], "arrays of numbers"),
     ],
 )
 def test_shapes_that_do_not_fit_are_refused(vertices, offsets, reason):

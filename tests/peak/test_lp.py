@@ -120,6 +120,7 @@ def test_a_kernel_that_is_a_point_is_refused():
         ({"objective": "min-min"}, "unknown objective"),
         ({"objective": "min-max", "method": "lp"}, "diagram only"),
         ({"objective": "min-max", "exact": True}, "no exact"),
+        ({"seed": -1}, "must not be negative"),
     ],
 )
 def test_what_cannot_be_done_is_said(arguments, reason):
