@@ -21,9 +21,11 @@ from harness.diagram.planar_map import RationalPoint
 from harness.diagram.work import Contradiction
 from harness.geometry.kernel import Kernel
 
-#: Triangles in one root, at most (and at most 1,000 + 100 m² with m candidates): so degenerate
-#: that halving does not end, and that no test stops it, is no input we know.
-MOST_TRIANGLES = 3_000_000
+#: Triangles in one root, at most (and 300 m² with m candidates), in small instances, which another
+#: builder takes if halving does not end, and in others.
+FEW_TRIANGLES, MANY_TRIANGLES = 20_000, 1_000_000
+#: An instance with at most so many segments is small.
+SMALL = 32
 #: A root with so many candidates is cut into 2^CUTS parts.
 MANY, CUTS = 96, 5
 
@@ -148,7 +150,7 @@ def find_leaves(
             sense,
             definite,
             world,
-            MOST_TRIANGLES,
+            FEW_TRIANGLES if prepared.instance.n <= SMALL else MANY_TRIANGLES,
         )
 
     jobs = list(_jobs(coordinates, weights, roots.triangles, count))

@@ -111,7 +111,7 @@ def subdivide(
     ``candidate_first`` on.  ``definite``: every L is ≥ 0 on the whole domain.  ``world``: (lines,
     lengths, classes) of :class:`harness.diagram.fast.prepare.Prepared`, and the known ties (first
     row of each corner, rows; see :func:`harness.diagram.fast.forms.relation`).  ``most``: triangles
-    allowed in a root.
+    allowed in a root, and 300 m² more with m candidates.
 
     Returns (tokens, leaf kinds, choices, first slot of each leaf, slots: place and owner, λ of the
     corners of the leaves that are not empty, which of them have low parts, and these, a point in
@@ -203,7 +203,7 @@ def subdivide(
         frames[0, 3], frames[0, 4], frames[0, 5] = 0, far, 0
         before = statistics[0]
         # Where one root has failed, nothing is gained by more.
-        allowed = 0 if statistics[5] else min(most, 1_000 + 100 * m * m)
+        allowed = 0 if statistics[5] else most + 300 * m * m
         top = 1
         while top > 0:
             top -= 1
