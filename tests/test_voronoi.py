@@ -15,6 +15,7 @@ import harness
 from harness import AngularVoronoi, voronoi
 from harness.errors import UserError
 from harness.geometry.instance import Instance
+from harness.geometry.predicates import compare_visual_angles
 from tests.strategies import instances
 
 TRIANGLE = [(0, 0), (4, 0), (1, 3)]
@@ -95,11 +96,10 @@ def test_shapes_and_location(case) -> None:
     assert found.dtype == np.int64
     assert found.tolist() == list(cells)
     # There the owner of the cell really has the least angle.
-    for (x, y), cell in witnesses:
-        arms = diagram.segments - np.array([float(x), float(y)])
-        cross = arms[:, 0, 0] * arms[:, 1, 1] - arms[:, 0, 1] * arms[:, 1, 0]
-        angles = np.abs(np.arctan2(cross, (arms[:, 0] * arms[:, 1]).sum(axis=1)))
-        assert angles[diagram.cell_segments[cell]] <= angles.min() + 1e-6
+    segments = diagram.instance.rational_segments()
+    for point, cell in witnesses:
+        owner = segments[diagram.cell_segments[cell]]
+        assert all((compare_visual_angles(point, owner, other) or 0) <= 0 for other in segments)
 
 
 def test_location_tells_outside_and_on_an_edge() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from typing import TYPE_CHECKING
 
 from harness.diagram.counts import default_domain
@@ -13,7 +14,9 @@ if TYPE_CHECKING:
     from harness.geometry.coordinates import Point
     from harness.geometry.instance import Instance
 
-BUILDERS = ("reference", "fast")
+_log = logging.getLogger(__name__)
+
+BUILDERS = ("fast", "reference")
 """The names of the builders; the first is the default."""
 
 MOST_HANDED_OVER = 32
@@ -64,8 +67,12 @@ def _fast_or_reference(
 
     from harness.diagram.fast.map import build_fast
     from harness.diagram.fast.prepare import has_plain_size
+    from harness.diagram.fast.subdivide import subdivide
     from harness.diagram.work import Contradiction, Work
+    from harness.geometry.jit import is_compiled
 
+    if not is_compiled(subdivide):
+        _log.warning("compiling the fast builder, once; this takes about a minute")
     try:
         if not has_plain_size(instance):
             raise Contradiction("coordinates beyond the middle of the range of doubles")

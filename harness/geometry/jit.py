@@ -46,8 +46,28 @@ def compiled(function: Callable[..., Any], *, parallel: bool = False) -> Any:
         dispatcher = numba.njit(cache=True, **options)(function)
     except RuntimeError:  # no directory to keep it in can be written to
         return numba.njit(**options)(function)
+    _take_numbers_as_such(dispatcher)
     stamp = _stamp(Path(function.__code__.co_filename).resolve())
     locator = dispatcher._cache._impl._locator
     locator.get_source_stamp = lambda: stamp
     dispatcher._cache._cache_file._source_stamp = stamp
     return dispatcher
+
+
+def is_compiled(dispatcher: Any) -> bool:
+    """Whether the machine code of a kernel is there, in memory or kept on disk."""
+    if dispatcher.signatures:
+        return True
+    kept = getattr(dispatcher._cache, "_cache_file", None)
+    return kept is not None and bool(kept._load_index())
+
+
+def _take_numbers_as_such(dispatcher: Any) -> None:
+    """Compile a callee once for all numbers, not anew for each constant it is called with."""
+    template = dispatcher.get_call_template
+
+    def get_call_template(args: Any, kws: Any) -> Any:
+        plain = {key: numba.types.unliteral(value) for key, value in dict(kws).items()}
+        return template(tuple(map(numba.types.unliteral, args)), plain)
+
+    dispatcher.get_call_template = get_call_template

@@ -233,7 +233,7 @@ def test_another_base_seed_gives_other_instances() -> None:
 
 def test_defaults_written_out_are_the_same_task() -> None:
     written = '[[sweep]]\nfamily="star"\nn=4\nparams={r_min=0.25, radius="uniform"}\n'
-    written += 'domain="kernel"\nobjective="smallest"\nbuilder="reference"'
+    written += 'domain="kernel"\nobjective="smallest"\nbuilder="fast"'
     assert study(written).tasks == study('[[sweep]]\nfamily="star"\nn=4').tasks
 
 

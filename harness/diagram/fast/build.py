@@ -21,9 +21,11 @@ from harness.diagram.planar_map import RationalPoint
 from harness.diagram.work import Contradiction
 from harness.geometry.kernel import Kernel
 
-#: Triangles in one root, at most (and at most 2,000 + 300 m² with m candidates): so degenerate
-#: that halving does not end, and that no test stops it, is no input we know.
-MOST_TRIANGLES = 3_000_000
+#: Triangles in one root, at most (and 300 m² with m candidates), in small instances, which another
+#: builder takes if halving does not end, and in others.
+FEW_TRIANGLES, MANY_TRIANGLES = 20_000, 1_000_000
+#: An instance with at most so many segments is small.
+SMALL = 32
 #: A root with so many candidates is cut into 2^CUTS parts.
 MANY, CUTS = 96, 5
 
@@ -37,7 +39,7 @@ class Leaves:
     """All leaves of all roots, in the order of ``order``; see :func:`subdivide`.
 
     ``shapes`` (l, 9): the barycentric weights of the corners of the leaves that are not empty,
-    ``lows`` what is missing in these doubles.
+    ``lows`` what is missing in the doubles of the rows ``low_rows`` (increasing).
     """
 
     order: Ints
@@ -47,6 +49,7 @@ class Leaves:
     first_slot: Ints
     slots: Any
     shapes: Floats
+    low_rows: Ints
     lows: Floats
     points: Floats
     shape_roots: Any
@@ -56,8 +59,10 @@ class Leaves:
 
     def weights(self, row: int) -> list[list[Fraction]]:
         """The exact barycentric weights of the corners of a leaf that is not empty."""
-        pairs = zip(self.shapes[row].tolist(), self.lows[row].tolist(), strict=True)
-        exact = [Fraction(high) + Fraction(low) for high, low in pairs]
+        exact = [Fraction(x) for x in self.shapes[row].tolist()]
+        low = int(np.searchsorted(self.low_rows, row))
+        if low < len(self.low_rows) and self.low_rows[low] == row:
+            exact = [x + Fraction(y) for x, y in zip(exact, self.lows[low].tolist(), strict=True)]
         return [exact[3 * k : 3 * k + 3] for k in range(3)]
 
 
@@ -89,6 +94,7 @@ def merged(parts: list[Any], jobs: list[Job]) -> Leaves:
         for part, job in zip(parts, jobs, strict=True)
         for piece in (np.array(job.before, dtype=np.int8), part[0])
     ]
+    shaped = [len(part[5]) for part in parts]
     order = [job.roots for job in jobs if not len(job.path) or not (job.path & 1).any()]
     return Leaves(
         order=np.concatenate(order),
@@ -98,12 +104,15 @@ def merged(parts: list[Any], jobs: list[Job]) -> Leaves:
         first_slot=offsets(3),
         slots=joined(4),
         shapes=joined(5),
-        lows=joined(6),
-        points=joined(7),
-        shape_roots=joined(8),
-        open_first=offsets(9),
-        open_ids=joined(10),
-        statistics=np.sum([part[11] for part in parts], axis=0),
+        low_rows=np.concatenate(
+            [part[6] + end for part, end in zip(parts, np.cumsum([0, *shaped[:-1]]), strict=True)]
+        ),
+        lows=joined(7),
+        points=joined(8),
+        shape_roots=joined(9),
+        open_first=offsets(10),
+        open_ids=joined(11),
+        statistics=np.sum([part[12] for part in parts], axis=0),
     )
 
 
@@ -141,7 +150,7 @@ def find_leaves(
             sense,
             definite,
             world,
-            MOST_TRIANGLES,
+            FEW_TRIANGLES if prepared.instance.n <= SMALL else MANY_TRIANGLES,
         )
 
     jobs = list(_jobs(coordinates, weights, roots.triangles, count))

@@ -158,7 +158,8 @@ class Chart:
         t, s = self.forms(i), self.forms(j)
         if which == 0:
             one, two = self._length(i), self._length(j)
-            return _raised([x * two - y * one for x, y in zip(t[3:], s[3:], strict=True)])
+            form = [x * two - y * one for x, y in zip(t[3:], s[3:], strict=True)]
+            return _raised(self._without_distance(form))
         result = [
             sum(
                 (weight * (t[q] * s[line] - which * s[q] * t[line]) for weight, q, line in terms),
@@ -175,6 +176,21 @@ class Chart:
                 ]
                 return _raised(quadratic)
         return result
+
+    def _without_distance(self, form: list[Any]) -> list[Any]:
+        """A quadratic form, or if it vanishes at infinity, which is a side of the triangle, then
+        what is left of it divided by w, raised to degree two and doubled."""
+        for k in range(3):
+            far = [c for c in range(3) if c != k]
+            if any(self.corners[c][2] != 0 for c in far):
+                continue
+            if all(value == 0 for value, pair in zip(form, _SQUARES, strict=True) if k not in pair):
+                line = [
+                    form[k] if c == k else 2 * form[_SQUARES.index((min(c, k), max(c, k)))]
+                    for c in range(3)
+                ]
+                return [line[c] + line[d] for c, d in _SQUARES]
+        return form
 
     def _length(self, segment: int) -> Any:
         """The length of a segment in units that all segments on its line share, times the square of

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from harness.diagram.fast.fine import fine_at_length, is_fine
-from harness.diagram.fast.forms import AT_LEAST_TWICE, raise_degree, sure_signs
+from harness.diagram.fast.forms import AT_LEAST_TWICE, is_flat, raise_degree, sure_signs
 from harness.diagram.fast.jit import compiled
 
 #: The corners, a bit each, of the entries q₀₀ q₁₁ q₂₂ q₀₁ q₀₂ q₁₂.
@@ -32,7 +32,7 @@ def is_zero_entry(r, far, known):
     if known & 1 and ENTRIES[r] & ~far == 0:
         return True
     for k in range(3):
-        if known >> (k + 7) & 1 and ENTRIES[r] >> k & 1:
+        if is_flat(known, k) and ENTRIES[r] >> k & 1:
             return True
     return False
 
@@ -62,24 +62,23 @@ def collinear_cubic(tables, i, j, length_i, length_j, bound, far, known, values,
         if not is_zero_entry(r, far, known):
             g[r] = at_length(tables, i, j, length_i, length_j, 3 + r)
         largest = max(largest, abs(g[r]))
-    zeros = 0  # corners at which the form is zero by construction
+    zeros = twice = 0  # corners at which the form is zero by construction
     if known & 1 and far in (3, 5, 6):
         n = 2 if far == 3 else (1 if far == 5 else 0)
         # H has g_nn at the corner n, 2 g_nk at the corner k; as a quadratic form:
         h = np.empty(3)
         for k in range(3):
             h[k] = g[n] if k == n else 2.0 * g[2 + n + k]
-            if k != n and known >> (k + 7) & 1:
+            if k != n and is_flat(known, k):
                 zeros |= 1 << k
         g[0], g[1], g[2] = h[0], h[1], h[2]
         g[3], g[4], g[5] = 0.5 * (h[0] + h[1]), 0.5 * (h[0] + h[2]), 0.5 * (h[1] + h[2])
         bound *= 2.0
         largest *= 2.0
-        twice = 0
     else:
         for k in range(3):
             zeros |= (1 << k) if is_zero_entry(k, far, known) else 0
-        twice = known >> 7 & 7
+            twice |= (1 << k) if is_flat(known, k) else 0
     raise_degree(g[0], g[1], g[2], g[3], g[4], g[5], values)
     # Raising the degree rounds.
     bound += 2.0**-49 * largest

@@ -12,7 +12,7 @@ import numpy as np
 from harness.diagram.counts import Counts, Domain, Objective
 from harness.diagram.fast import chains
 from harness.diagram.fast.arrays import Arrays, glued, joined
-from harness.diagram.fast.build import Leaves, open_rows, solve_open
+from harness.diagram.fast.build import SMALL, Leaves, open_rows, solve_open
 from harness.diagram.fast.decisions import decide_open
 from harness.diagram.fast.hard import LocalMap
 from harness.diagram.fast.leaves import EMPTY
@@ -36,7 +36,6 @@ from harness.geometry.kernel import Kernel, kernel
 SEEDS = 4
 #: So many open leaves are solved by algebra, one by one, in a small and in any other instance.
 FEW_OPEN, MOST_OPEN = 60, 20_000
-SMALL = 32
 
 
 @dataclass(eq=False)

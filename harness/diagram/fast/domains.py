@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
 from functools import partial
 
 import numpy as np
 
-from harness.diagram.fast.plane import clipped_ears, lines_through, refined, with_points
+from harness.diagram.fast.plane import LARGEST_TABLE, clipped_ears, incidences, refined, with_points
 from harness.diagram.fast.roots import (
     Corners,
     Roots,
@@ -72,7 +72,12 @@ def _roots(
 
 
 def _endpoint_numbers(instance: Instance, kernel: Kernel) -> list[list[int]]:
-    """For every corner of the kernel the segments whose lines meet there."""
+    """For every corner of the kernel the segments whose lines meet there.
+
+    Of very large polygons only the two that bound the kernel.
+    """
+    if len(kernel.corners) * instance.n <= LARGEST_TABLE:
+        return incidences(instance, kernel.corners)
     rows = []
     for k, corner in enumerate(kernel.corners):
         row = []
@@ -135,18 +140,11 @@ def _kernel_with_points(
     and refined."""
     points: list[RationalPoint] = []
     wall: list[int] = []
-    lines: list[int] = []
     for k, corner in enumerate(kernel.corners):
         for point in (corner, *flat.get(k, ())):
             points.append(point)
             wall.append(k)
-            lines.append(kernel.sides[k])
-    touching = segments_at(instance, points)
-    incident = []
-    for k, point in enumerate(points):
-        row = {edge: 2 * edge for edge in (lines[k - 1], lines[k])}
-        row |= {edge: 2 * edge + 1 for edge in touching[point]}
-        incident.append(sorted(row.values()))
+    incident = incidences(instance, points)
     if hubs:
         return _with_hubs(instance, points, incident, wall, hubs, seed), []
     return fan(points, incident, wall, free_point(kernel.corners, seed), seed), []
@@ -164,21 +162,9 @@ def _with_hubs(
     n = len(points)
     around = list(points)
     triangles = with_points(around, clipped_ears(points), hubs)
-    rows = incident + [lines_through(instance, point) for point in hubs]
+    rows = incident + incidences(instance, list(hubs))
     walls = {(k, (k + 1) % n): wall[k] for k in range(n)}
     return refined(around, rows, triangles, walls, seed)
-
-
-def segments_at(
-    instance: Instance, points: Iterable[RationalPoint]
-) -> dict[RationalPoint, list[int]]:
-    """The segments that end at each of some points."""
-    found: dict[RationalPoint, list[int]] = {point: [] for point in points}
-    for k, segment in enumerate(instance.rational_segments()):
-        for point in segment:
-            if point in found:
-                found[point].append(k)
-    return found
 
 
 def free_point(corners: list[RationalPoint], seed: int) -> RationalPoint:
@@ -220,8 +206,7 @@ def interior_roots(
     n = instance.n
     order = range(n) if instance.orientation > 0 else range(n - 1, -1, -1)
     points = [instance.exact_vertex(k) for k in order]
-    touching = segments_at(instance, points)
-    incident = [[2 * edge + 1 for edge in touching[point]] for point in points]
+    incident = incidences(instance, points)
     wall = list(range(n))
     if hubs:
         return _with_hubs(instance, points, incident, wall, hubs, seed)

@@ -106,12 +106,15 @@ def suspects_hub(t, norms, m, lsign, point):
         return _lines_meet(t, norms, m, lsign, point)
     if m < 5 or crossing > 0:
         return False
+    sides = np.empty(m)
+    for a in range(m):
+        sides[a] = lsign[a]
     gradients = np.empty((m, 2))
     sizes = np.empty(m)
     out = np.empty(3)
     cubics = np.empty((m, 10))
     for a in range(1, m):
-        coefficients = fine_coefficients(t, 0, a, lsign[0], lsign[a])
+        coefficients = fine_coefficients(t, 0, a, sides[0], sides[a])
         sizes[a] = 0.0
         for c in range(10):
             cubics[a, c] = coefficients[c]
@@ -130,7 +133,7 @@ def suspects_hub(t, norms, m, lsign, point):
     meet(cubics[b], cubics[c], point, out)
     if not (abs(point[0]) < 2.0 and abs(point[1]) < 2.0):
         return False
-    x, y, _, _ = tie_of_three(t, 0, b, c, lsign, cubics[b], cubics[c], point[0], point[1])
+    x, y, _, _ = tie_of_three(t, 0, b, c, sides, cubics[b], cubics[c], point[0], point[1])
     point[0], point[1] = x[0], y[0]
     if not (x[0] > 0.0 and y[0] > 0.0 and x[0] + y[0] < 1.0):
         return False
@@ -138,7 +141,7 @@ def suspects_hub(t, norms, m, lsign, point):
     for a in range(1, m):
         bound = 16.0 * pair_bound(norms, 0, a)
         if a not in (b, c) and bound < 2.0**-8 * sizes[a]:
-            count += abs(cubic_at(t, 0, a, lsign[0], lsign[a], x, y)) <= bound
+            count += abs(cubic_at(t, 0, a, sides[0], sides[a], x, y)) <= bound
     return count >= 5
 
 

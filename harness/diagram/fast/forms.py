@@ -160,10 +160,10 @@ def relation(i, j, classes, tie_first, ties, spots):
 
     Bit 0: the segments have the same vector up to sign, so that at infinity their L are equal up
     to sign.  Bits 1 … 3: F⁺_ij is zero at corner 0, 1, 2 of the triangle; bits 4 … 6: F⁻_ij is;
-    bits 7 … 9: the one of them that vanishes at infinity is zero there with its gradient.
+    bits 7 … 9 and 10 … 12: so is its gradient.
     ``spots``: the numbers of the triangle's corners among the corners of roots, or −1; at some
-    of these ties are known (``ties`` rows: i, j, 1 for F⁺ or 2 for F⁻ or 3, or 4 for a zero
-    with the gradient, from ``tie_first`` on).
+    of these ties are known (``ties``: rows of :mod:`harness.diagram.fast.ties` without the corner,
+    from ``tie_first`` on).
     """
     bits = 1 if classes[i] >= 0 and classes[i] == classes[j] else 0
     for k in range(3):
@@ -174,7 +174,7 @@ def relation(i, j, classes, tie_first, ties, spots):
                 ):
                     which = ties[row, 2]
                     bits |= (which & 1) << (k + 1) | (which >> 1 & 1) << (k + 4)
-                    bits |= (which >> 2) << (k + 7)
+                    bits |= (which >> 2 & 1) << (k + 7) | (which >> 3 & 1) << (k + 10)
     return bits
 
 
@@ -201,10 +201,17 @@ def is_structural_zero(c, tables, i, j, si, sj, far, known):
             if SUPPORT[c] >> k & 1 and sj * tables[j, k] != si * tables[i, k]:
                 return False
         return True
+    first = 7 if si * sj > 0 else 10
     for k in range(3):
-        if known >> (k + 7) & 1 and AT_LEAST_TWICE[k, c]:
-            return bool(sj * tables[j, k] == si * tables[i, k])
+        if known >> (k + first) & 1 and AT_LEAST_TWICE[k, c]:
+            return True
     return False
+
+
+@compiled
+def is_flat(known, k):
+    """Whether one of F⁺ and F⁻ is zero at corner k with its gradient."""
+    return (known >> (k + 7) | known >> (k + 10)) & 1 == 1
 
 
 @compiled

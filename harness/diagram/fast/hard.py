@@ -18,7 +18,10 @@ from harness.diagram.work import Contradiction
 from harness.geometry.instance import Instance
 
 #: Bits of the boxes by which ports are sorted along a side.
-BITS = 400
+BITS = 1024
+#: Barycentric coordinates from these boxes are off by less than this; what is closer is not told
+#: apart.
+TINY = Fraction(1, 2**200)
 
 
 @dataclass
@@ -98,8 +101,13 @@ class _Reading:
                     ends[node].append((k, at_end))
         located = sorted((self._place(node), node) for node in ends)
         for ((place, t), _), ((other, s), _) in pairwise(located):
-            if place == other and t == s and place % 2:
+            if place == other and abs(t - s) < TINY:
                 raise Contradiction("two ports in one point")
+        # A corner is the end of walls, as a node or without one: were a node only close to it,
+        # there would be one too many.
+        at_corners = sum(place % 2 == 0 for (place, _), _ in located)
+        if at_corners + sum(wall.nodes[0] is None for wall in self.diagram.walls) != 3:
+            raise Contradiction("a port too close to a corner")
         ports = []
         for (place, _), node in located:
             if place % 2 and len(ends[node]) > 1:
@@ -138,13 +146,16 @@ class _Reading:
         x, y = (low[0] + high[0]) / 2, (low[1] + high[1]) / 2
         a, b, c = self.corners
         area = _cross(a, b, c)
+        width = max(high[0] - low[0], high[1] - low[1])
+        reach = max(abs(p[k] - q[k]) for p, q in ((a, b), (b, c), (c, a)) for k in range(2))
+        if 2 * width * reach >= TINY * area:
+            raise Contradiction("a triangle too small for boxes")
         weights = [
             _cross((x, y), b, c) / area,
             _cross(a, (x, y), c) / area,
             _cross(a, b, (x, y)) / area,
         ]
-        tiny = Fraction(1, 2 ** (BITS // 2))
-        zero = [abs(w) < tiny for w in weights]
+        zero = [abs(w) < TINY for w in weights]
         if sum(zero) == 2:
             return 2 * zero.index(False), Fraction(0)
         if sum(zero) != 1:

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from fractions import Fraction
 from functools import cmp_to_key
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -167,13 +168,7 @@ def plane_roots(
     from scipy.spatial import Delaunay
 
     segments = instance.rational_segments()
-    touching: defaultdict[RationalPoint, list[int]] = defaultdict(list)
-    for k, segment in enumerate(segments):
-        for point in segment:
-            touching[point].append(2 * k + 1)
-    for point in hubs:
-        touching[point] += lines_through(instance, point)
-    points = list(touching)
+    points = list(dict.fromkeys([*(point for segment in segments for point in segment), *hubs]))
     origin = points[0]
     floats = np.array([[float(x - origin[0]), float(y - origin[1])] for x, y in points])
     centre = (floats.min(axis=0) + floats.max(axis=0)) / 2
@@ -186,7 +181,7 @@ def plane_roots(
         )
         for k in range(3)
     ]
-    incident = [touching[p] for p in points] + [[], [], []]
+    incident = [*incidences(instance, points), [], [], []]
     points += corners_far
     floats = np.concatenate(
         [floats, [[float(x - origin[0]), float(y - origin[1])] for x, y in corners_far]]
@@ -234,13 +229,48 @@ def plane_roots(
     )
 
 
-def lines_through(instance: Instance, point: RationalPoint) -> list[int]:
-    """2·segment for all segments whose line passes through a point."""
-    return [
-        2 * k
-        for k, (a, b) in enumerate(instance.rational_segments())
-        if orientation(a, b, point) == 0
-    ]
+#: Points and segments are looked at in one table while it has at most so many entries.
+LARGEST_TABLE = 4_000_000
+
+
+def incidences(instance: Instance, points: list[RationalPoint]) -> list[list[int]]:
+    """For every point the segments that end there, 2·segment + 1, and those whose line passes
+    through it, 2·segment; of very many points and segments the former only.
+
+    O(points · segments) in doubles, exact where these leave it open.
+    """
+    touching: dict[RationalPoint, set[int]] = {point: set() for point in points}
+    for k, segment in enumerate(instance.rational_segments()):
+        for point in segment:
+            if point in touching:
+                touching[point].add(k)
+    if len(points) * instance.n <= LARGEST_TABLE:
+        near = _near_lines(instance, points)
+    else:
+        near = np.zeros((0, 2), dtype=np.int64)
+    rows = [{2 * k + 1 for k in touching[point]} for point in points]
+    for number, k in near.tolist():
+        a, b = instance.rational_segment(k)
+        if k not in touching[points[number]] and orientation(a, b, points[number]) == 0:
+            rows[number].add(2 * k)
+    return [sorted(row) for row in rows]
+
+
+def _near_lines(instance: Instance, points: list[RationalPoint]) -> Any:
+    """Pairs (point, segment) of which the point may be on the segment's line, (k, 2)."""
+    x0, y0 = points[0]
+    p = np.array([[float(x - x0), float(y - y0)] for x, y in points])
+    ends = np.array(
+        [
+            [[float(x - x0), float(y - y0)] for x, y in segment]
+            for segment in instance.rational_segments()
+        ]
+    )
+    d = ends[:, 1] - ends[:, 0]
+    to_a = ends[None, :, 0] - p[:, None]
+    across = np.abs(to_a[..., 0] * d[:, 1] - to_a[..., 1] * d[:, 0])
+    reach = np.abs(ends).max() + np.abs(p).max()
+    return np.argwhere(across <= 1e-9 * reach * np.abs(d).sum(axis=1))
 
 
 def _same_direction(d: RationalPoint, e: RationalPoint) -> bool:

@@ -77,19 +77,19 @@ def beats(tables, i, j, lt, ls, qt, qs, bound, far, known):
     ``lt``, ``ls``: signs of L (0: not constant).  ``qt``, ``qs``: signs of Q (0: not constant).
     """
     if lt != 0 and ls != 0:
-        return surely_positive(tables, i, j, lt, ls, bound, far, known)
+        return surely_positive(tables, i, j, float(lt), float(ls), bound, far, known)
     if qt == 1 and qs == -1:
         return True
     if lt != 0:  # |L_s| is ±L_s: one sign suffices where Q_t ≥ 0, else take both
-        one = surely_positive(tables, i, j, lt, 1.0, bound, far, known)
+        one = surely_positive(tables, i, j, float(lt), 1.0, bound, far, known)
         if qt == 1:
-            return one or surely_positive(tables, i, j, lt, -1.0, bound, far, known)
-        return one and surely_positive(tables, i, j, lt, -1.0, bound, far, known)
+            return one or surely_positive(tables, i, j, float(lt), -1.0, bound, far, known)
+        return one and surely_positive(tables, i, j, float(lt), -1.0, bound, far, known)
     if ls != 0:  # likewise for |L_t|, where Q_s ≤ 0
-        one = surely_positive(tables, i, j, 1.0, ls, bound, far, known)
+        one = surely_positive(tables, i, j, 1.0, float(ls), bound, far, known)
         if qs == -1:
-            return one or surely_positive(tables, i, j, -1.0, ls, bound, far, known)
-        return one and surely_positive(tables, i, j, -1.0, ls, bound, far, known)
+            return one or surely_positive(tables, i, j, -1.0, float(ls), bound, far, known)
+        return one and surely_positive(tables, i, j, -1.0, float(ls), bound, far, known)
     return False
 
 

@@ -10,7 +10,7 @@ from harness.diagram.fast.plane import plane_roots
 from harness.diagram.fast.prepare import Prepared
 from harness.diagram.fast.roots import Roots
 from harness.diagram.fast.ties import Ties, tie_arrays, ties_at_corners, ties_at_hubs
-from harness.diagram.work import Contradiction
+from harness.diagram.work import Contradiction, Hopeless
 from harness.geometry.kernel import Kernel
 
 #: Rounds of new hubs, at most.
@@ -29,7 +29,7 @@ def search(
 
     Exact ties of many segments make leaves that no halving can resolve.  They are found there,
     become special corners, and everything is subdivided anew.  Raises Contradiction if that does
-    not end.
+    not end, Hopeless if the halving does not: where three segments tie along a curve, for one.
     """
     hubs = Hubs()
     sense = 1.0 if objective == "smallest" else -1.0
@@ -71,6 +71,8 @@ def _settled(
         world = (prepared.lines, prepared.lengths, prepared.classes, first, rows)
         candidates = candidates_of(prepared, roots, found, spans, sense, definite, world)
         leaves = find_leaves(prepared, roots, candidates, definite, sense, workers, world)
+        if leaves.statistics[5]:
+            raise Hopeless("halving does not end")
         new = ties_at_corners(prepared.instance, roots, leaves)
         if new <= ties:
             return leaves, ties

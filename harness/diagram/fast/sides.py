@@ -17,6 +17,7 @@ from harness.diagram.fast.forms import (
     U,
     cubic,
     divided_by_distance,
+    is_flat,
     relation,
     sure_signs,
 )
@@ -103,7 +104,7 @@ def all_pairs(tables, start, m, sides, norms, factor, far, world, spots, ids, w)
                     bound *= 9.0
                     sure_signs(values[a, b], bound, signs[a, b])
                     for k in range(3):
-                        if known >> (k + 7) & 1 and k != near:
+                        if is_flat(known, k) and k != near:
                             values[a, b, k], signs[a, b, k] = 0.0, 0
             bounds[a, b] = bounds[b, a] = bound
             for c in range(10):

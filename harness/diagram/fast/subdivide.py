@@ -111,12 +111,13 @@ def subdivide(
     ``candidate_first`` on.  ``definite``: every L is ≥ 0 on the whole domain.  ``world``: (lines,
     lengths, classes) of :class:`harness.diagram.fast.prepare.Prepared`, and the known ties (first
     row of each corner, rows; see :func:`harness.diagram.fast.forms.relation`).  ``most``: triangles
-    allowed in a root.
+    allowed in a root, and 300 m² more with m candidates.
 
     Returns (tokens, leaf kinds, choices, first slot of each leaf, slots: place and owner, λ of the
-    corners of the leaves that are not empty and their low parts, a point in each, root of each,
+    corners of the leaves that are not empty, which of them have low parts, and these, a point in
+    each, root of each,
     first candidate and candidates of the open leaves, statistics: triangles, tests, hard leaves,
-    open leaves, leaves in double-double).
+    open leaves, leaves in double-double, whether a root had too many triangles).
     """
     widest = 0
     for r in order:
@@ -136,12 +137,13 @@ def subdivide(
     choices = np.empty(512, np.int8)
     slots = np.empty((1024, 2), np.int32)
     first_slot = np.empty(513, np.int64)
-    shapes = np.empty((256, 18))
+    shapes = np.empty((256, 9))
+    low_rows, lows = np.empty(16, np.int64), np.empty((16, 9))
     points = np.empty((256, 2))
     shape_roots = np.empty(256, np.int32)
     open_first = np.empty(65, np.int64)
     open_ids = np.empty(256, np.int64)
-    n_tokens = n_leaves = n_slots = n_shapes = n_open = n_open_ids = 0
+    n_tokens = n_leaves = n_slots = n_shapes = n_lows = n_open = n_open_ids = 0
     kept_desk = new_desk(widest)
     desk = borrowed_desk(kept_desk)
     scratch = desk[2]
@@ -158,7 +160,7 @@ def subdivide(
         ),
         special,
     )
-    statistics = np.zeros(5, np.int64)
+    statistics = np.zeros(6, np.int64)
     kept_small = (np.empty(3, np.int64), np.empty(3, np.int64), np.empty(18))
     spots, e, lam = borrowed(kept_small[0]), borrowed(kept_small[1]), borrowed(kept_small[2])
     for root in order:
@@ -200,7 +202,8 @@ def subdivide(
         frames[0, 0], frames[0, 1], frames[0, 2] = 0, m, len(path)
         frames[0, 3], frames[0, 4], frames[0, 5] = 0, far, 0
         before = statistics[0]
-        allowed = min(most, 2_000 + 300 * m * m)
+        # Where one root has failed, nothing is gained by more.
+        allowed = 0 if statistics[5] else most + 300 * m * m
         top = 1
         while top > 0:
             top -= 1
@@ -232,11 +235,12 @@ def subdivide(
             )
             statistics[1] += tests
             patience = 0 if m < had else patience + 1
+            if kind == FAILED and statistics[0] - before > allowed:
+                kind, statistics[5] = HARD, 1
             if kind == FAILED and (
                 max(e[(k + 1) % 3], e[(k + 2) % 3]) >= FINEST
                 or depth >= DEEPEST
                 or (patience > PATIENCE and m <= 12)
-                or statistics[0] - before > allowed
             ):
                 kind = HARD
             if n_tokens + 1 > len(tokens):
@@ -292,7 +296,12 @@ def subdivide(
                 if n_shapes + 1 > len(shapes):
                     shapes, points = grown(shapes, n_shapes + 1), grown(points, n_shapes + 1)
                     shape_roots = grown(shape_roots, n_shapes + 1)
-                shapes[n_shapes] = lam
+                shapes[n_shapes] = lam[:9]
+                if lam[9:].any():
+                    if n_lows + 1 > len(lows):
+                        low_rows, lows = grown(low_rows, n_lows + 1), grown(lows, n_lows + 1)
+                    low_rows[n_lows], lows[n_lows] = n_shapes, lam[9:]
+                    n_lows += 1
                 points[n_shapes] = scratch[6]
                 shape_roots[n_shapes] = root
                 n_shapes += 1
@@ -313,8 +322,9 @@ def subdivide(
         choices[:n_leaves].copy(),
         first_slot[: n_leaves + 1].copy(),
         slots[:n_slots].copy(),
-        shapes[:n_shapes, :9].copy(),
-        shapes[:n_shapes, 9:].copy(),
+        shapes[:n_shapes].copy(),
+        low_rows[:n_lows].copy(),
+        lows[:n_lows].copy(),
         points[:n_shapes].copy(),
         shape_roots[:n_shapes].copy(),
         open_first[: n_open + 1].copy(),

@@ -14,9 +14,9 @@ from harness.diagram.fast.roots import Roots
 from harness.diagram.planar_map import RationalPoint
 from harness.geometry.instance import Instance
 
-#: Rows (corner, i, j, 1 for F⁺ or 2 for F⁻ or 3; or 4: F vanishes twice, at infinity).
+#: Rows (corner, i, j, which): the sum of 1 if F⁺ is zero there, 2 if F⁻ is, and 4 or 8 if its
+#: gradient is, too.
 Ties = set[tuple[int, int, int, int]]
-TWICE = 4
 
 
 def ties_at_corners(instance: Instance, roots: Roots, leaves: Leaves) -> Ties:
@@ -65,16 +65,26 @@ def _ties(
 
 
 def _tie(instance: Instance, i: int, j: int, p: RationalPoint) -> int:
-    """1 if F⁺_ij is zero at p, 2 if F⁻_ij is, 3 if both are, 0 if none."""
+    """Which of F⁺_ij and F⁻_ij are zero at p; see Ties."""
     (qi, li), (qj, lj) = _forms(instance, i, p), _forms(instance, j, p)
-    return (1 if qi * lj == qj * li else 0) + (2 if qi * lj == -qj * li else 0)
+    which = (1 if qi * lj == qj * li else 0) + (2 if qi * lj == -qj * li else 0)
+    if not which:
+        return 0
+    (ui, vi), (uj, vj) = _gradients(instance, i, p), _gradients(instance, j, p)
+    if li == lj == 0 and vi[0] * vj[1] == vi[1] * vj[0]:
+        return which  # on one line, whose factor is divided out
+    for bit, sign in ((1, 1), (2, -1)):
+        flat = all(ui[k] * lj + qi * vj[k] == sign * (uj[k] * li + qj * vi[k]) for k in range(2))
+        which += 4 * bit if which & bit and flat else 0
+    return which
 
 
 def _tie_far(instance: Instance, i: int, j: int, d: RationalPoint) -> int:
-    """The same at infinity, in the direction d; or TWICE.
+    """The same at infinity, in the direction d.
 
     There Q is |d|² and L is −d × v.  If both have the vector v, and δ is the difference of their
-    middles, F is w·(|d|² (v × δ) + 2 (δ·d)(d × v)) to first order in w.
+    middles, F is w·(|d|² (v × δ) + 2 (δ·d)(d × v)) to first order in w.  That F vanishes itself is
+    known without ties then.
     """
     (a, b), (c, e) = instance.rational_segment(i), instance.rational_segment(j)
     v, w = (b[0] - a[0], b[1] - a[1]), (e[0] - c[0], e[1] - c[1])
@@ -84,7 +94,14 @@ def _tie_far(instance: Instance, i: int, j: int, d: RationalPoint) -> int:
     delta = (a[0] + b[0] - c[0] - e[0], a[1] + b[1] - c[1] - e[1])
     square = d[0] ** 2 + d[1] ** 2
     along, across = delta[0] * d[0] + delta[1] * d[1], v[0] * delta[1] - v[1] * delta[0]
-    return TWICE if li != 0 and square * across + 2 * along * li == 0 else 0
+    flat = li != 0 and square * across + 2 * along * li == 0
+    return (4 if v == w else 8) if flat else 0
+
+
+def _gradients(instance: Instance, k: int, p: RationalPoint) -> tuple[RationalPoint, RationalPoint]:
+    """The gradients of Q and L of a segment at a point."""
+    a, b = instance.rational_segment(k)
+    return (2 * p[0] - a[0] - b[0], 2 * p[1] - a[1] - b[1]), (a[1] - b[1], b[0] - a[0])
 
 
 def _forms(instance: Instance, k: int, p: RationalPoint) -> tuple[Fraction, Fraction]:
