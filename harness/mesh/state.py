@@ -1,0 +1,128 @@
+"""A mesh on its way: coordinates that change, moves that are counted, time that runs out."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from harness.mesh.mesh import Mesh
+from harness.mesh.quality import Quality, least_angles, quality
+from harness.mesh.stars import Flags, Ints, Stars, coloured
+from harness.mesh.validation import Floats
+
+CHUNK = 512
+"""Vertices of one colour that a thread takes at a time."""
+SAME = 1e-9
+"""Degrees by which angles that rounding alone tells apart may differ."""
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """What the mesh looked like after a sweep: its number from 1, what was done, moves so far."""
+
+    number: int
+    stage: str
+    quality: Quality
+    moves: int
+    seconds: float
+
+
+@dataclass
+class State:
+    """Coordinates of a mesh of fixed connectivity while it is improved.
+
+    ``x``, ``y``: (n,), at most 1 in absolute value.  ``visits`` and ``moves`` count vertices that
+    were looked at and moved.  ``history``: a record of every sweep.
+    """
+
+    triangles: Ints
+    stars: Stars
+    free: Flags
+    x: Floats
+    y: Floats
+    order: Ints
+    colours: Ints
+    pool: ThreadPoolExecutor
+    deadline: float = np.inf
+    tell: Callable[[Sweep], None] | None = None
+    begin: float = field(default_factory=time.perf_counter)
+    visits: int = 0
+    moves: int = 0
+    history: list[Sweep] = field(default_factory=list)
+
+    @property
+    def is_late(self) -> bool:
+        """Whether the time is over."""
+        return time.monotonic() >= self.deadline
+
+    @property
+    def points(self) -> Floats:
+        """The coordinates (n, 2)."""
+        return np.column_stack([self.x, self.y])
+
+    @property
+    def least(self) -> Floats:
+        """The least angle of each triangle, increasing, in degrees."""
+        return np.sort(least_angles(self.points, self.triangles))
+
+    def record(self, stage: str) -> None:
+        """Note what the mesh looks like now, and tell who wants to know."""
+        seconds = time.perf_counter() - self.begin
+        now = quality(self.points, self.triangles)
+        self.history.append(Sweep(len(self.history) + 1, stage, now, self.moves, seconds))
+        if self.tell is not None:
+            self.tell(self.history[-1])
+
+    def sweep(self, kernel: Any, *settings: Any) -> int:
+        """Run ``kernel(order, first, last, offsets, degrees, ring, x, y, *settings)`` everywhere.
+
+        Colour after colour: vertices of one colour do not see each other, so they may be moved at
+        the same time, and the result is the same for every number of threads.  The kernel returns
+        how many vertices moved, and so does this.
+        """
+        moved = 0
+        arrays = (*self.stars[:3], self.x, self.y)
+        for first, last in zip(self.colours[:-1].tolist(), self.colours[1:].tolist(), strict=True):
+
+            def run(start: int, last: int = last) -> int:
+                stop = min(start + CHUNK, last)
+                return int(kernel(self.order, start, stop, *arrays, *settings))
+
+            starts = range(first, last, CHUNK)
+            run_all = map if len(starts) < 2 else self.pool.map
+            moved += sum(run_all(run, starts))
+        self.visits += len(self.order)
+        self.moves += moved
+        return moved
+
+
+@contextmanager
+def state_of(
+    mesh: Mesh, workers: int | None, deadline: float, tell: Callable[[Sweep], None] | None
+) -> Iterator[State]:
+    """The state of a mesh whose coordinates are at most 1 in absolute value."""
+    free = ~mesh.fixed
+    order, colours = coloured(*mesh.stars[:3], free)
+    x, y = (np.ascontiguousarray(mesh.points[:, k]).copy() for k in (0, 1))
+    with ThreadPoolExecutor(workers or len(os.sched_getaffinity(0))) as pool:
+        yield State(mesh.triangles, mesh.stars, free, x, y, order, colours, pool, deadline, tell)
+
+
+def rises(before: Floats, after: Floats) -> bool:
+    """Whether a vector of angles, sorted increasingly, is above another in lexicographic order.
+
+    In degrees; differences of at most ``SAME`` are none.  Vectors may differ in length: the one
+    that ends first is above, as what is not there is not bad.
+    """
+    m = min(len(before), len(after))
+    apart = np.flatnonzero(np.abs(after[:m] - before[:m]) > SAME)
+    if len(apart):
+        return bool(after[apart[0]] > before[apart[0]])
+    return len(after) < len(before)
