@@ -14,7 +14,7 @@ import numpy as np
 
 from harness.mesh.mesh import Mesh
 from harness.mesh.quality import Quality, least_angles, quality
-from harness.mesh.stars import Flags, Ints, Stars, coloured
+from harness.mesh.stars import Flags, Ints, Stars, coloured, triangles_of
 from harness.mesh.validation import Floats
 
 CHUNK = 512
@@ -36,7 +36,7 @@ class Sweep:
 
 @dataclass
 class State:
-    """Coordinates of a mesh of fixed connectivity while it is improved.
+    """A mesh while it is improved; its stars may change too, see :meth:`reconnect`.
 
     ``x``, ``y``: (n,), at most 1 in absolute value.  ``visits`` and ``moves`` count vertices that
     were looked at and moved.  ``history``: a record of every sweep.
@@ -55,6 +55,7 @@ class State:
     begin: float = field(default_factory=time.perf_counter)
     visits: int = 0
     moves: int = 0
+    flips: int = 0
     history: list[Sweep] = field(default_factory=list)
 
     @property
@@ -71,6 +72,13 @@ class State:
     def least(self) -> Floats:
         """The least angle of each triangle, increasing, in degrees."""
         return np.sort(least_angles(self.points, self.triangles))
+
+    def reconnect(self, flips: int) -> None:
+        """Read triangles and colours off the stars again, after so many flips of edges."""
+        if flips:
+            self.flips += flips
+            self.triangles = triangles_of(*self.stars, len(self.x))
+            self.order, self.colours = coloured(*self.stars[:3], self.free)
 
     def record(self, stage: str) -> None:
         """Note what the mesh looks like now, and tell who wants to know."""
@@ -109,10 +117,11 @@ def state_of(
 ) -> Iterator[State]:
     """The state of a mesh whose coordinates are at most 1 in absolute value."""
     free = ~mesh.fixed
-    order, colours = coloured(*mesh.stars[:3], free)
+    stars = Stars(*(array.copy() for array in mesh.stars))
+    order, colours = coloured(*stars[:3], free)
     x, y = (np.ascontiguousarray(mesh.points[:, k]).copy() for k in (0, 1))
     with ThreadPoolExecutor(workers or len(os.sched_getaffinity(0))) as pool:
-        yield State(mesh.triangles, mesh.stars, free, x, y, order, colours, pool, deadline, tell)
+        yield State(mesh.triangles, stars, free, x, y, order, colours, pool, deadline, tell)
 
 
 def rises(before: Floats, after: Floats) -> bool:

@@ -9,6 +9,7 @@ import pytest
 from harness.errors import UserError
 from harness.mesh import read_mesh, write_mesh
 from harness.mesh.door import improve_mesh
+from harness.mesh.options import Options
 from tests.mesh.meshes import random_mesh
 
 
@@ -23,7 +24,7 @@ def test_formats_go_in_and_out(tmp_path, suffix) -> None:
     points, triangles = random_mesh(12)
     path = written(tmp_path / f"in.{suffix}", points, triangles)
     stored = read_mesh(path)
-    better = improve_mesh(stored.mesh, sweeps=3)
+    better = improve_mesh(stored.mesh, Options(sweeps=3))
     write_mesh(tmp_path / "out.vtk", stored, better.points)
     again = read_mesh(tmp_path / "out.vtk").mesh
     assert again.points == pytest.approx(better.points)
@@ -45,7 +46,7 @@ def test_data_lines_and_z_are_kept(tmp_path) -> None:
         ),
     )
     stored = read_mesh(tmp_path / "in.vtu")
-    better = improve_mesh(stored.mesh, sweeps=3)
+    better = improve_mesh(stored.mesh, Options(sweeps=3))
     write_mesh(tmp_path / "out.vtu", stored, better.points)
     out = meshio.read(tmp_path / "out.vtu")
     assert out.points[:, :2] == pytest.approx(better.points)

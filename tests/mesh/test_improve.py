@@ -132,7 +132,15 @@ def test_sweeps_are_told_as_they_happen() -> None:
 
 @pytest.mark.parametrize(
     ("options", "message"),
-    [({"objective": "best"}, "objective 'best'"), ({"sweeps": -1}, "sweeps -1")],
+    [
+        ({"objective": "best"}, "objective 'best'"),
+        ({"objective": "apx"}, "did you mean 'apex'"),
+        ({"topology": "free"}, "topology 'free'"),
+        ({"remedy": "ear"}, "remedy 'ear'"),
+        ({"sweeps": -1}, "sweeps -1"),
+        ({"objective": "apex", "topology": "flip"}, "needs the objective 'all'"),
+        ({"remedy": "chord"}, "needs the objective 'apex'"),
+    ],
 )
 def test_wrong_options_are_named(options, message) -> None:
     with pytest.raises(UserError, match=message):
