@@ -220,11 +220,13 @@ def weak_rim(v, mesh, rx, ry, angles):
 
 
 @compiled
-def greedy(order, offsets, degrees, ring, closed, free, x, y, bisector, chord, visits, moves):
+def greedy(waiting, offsets, degrees, ring, closed, free, x, y, bisector, chord, visits, moves):
     """The greedy, for at most so many visits and moves; (visits, moves, flips, whether done).
 
-    ``order``: the free vertices.  ``bisector``, ``chord``: the remedies to use.
+    ``waiting``: (n,), the vertices in the queue: at first the free ones, after a call those that
+    are left.  ``bisector``, ``chord``: the remedies to use.
     """
+    order = np.flatnonzero(waiting)
     rim = bisector or chord
     n, widest = len(degrees), 0
     for v in range(n):
@@ -235,7 +237,7 @@ def greedy(order, offsets, degrees, ring, closed, free, x, y, bisector, chord, v
     scratch = (np.empty(widest + 4), np.empty(widest + 4), np.empty((3, 3 * widest)))
     mesh = (offsets, degrees, ring, closed, free, x, y)
     keys = np.full(n, np.inf)
-    for v in order:
+    for v in np.flatnonzero(free):
         keys[v] = worth_of(v, rim, offsets, degrees, ring, x, y, scratch[2])
     heap, place, size = filled(keys, order)
     queue = (heap, place)
@@ -264,4 +266,5 @@ def greedy(order, offsets, degrees, ring, closed, free, x, y, bisector, chord, v
                     flips += 1
                     for u in (v, w, a, b):
                         size = renew(u, rim, mesh, keys, queue, size, scratch)
+    waiting[:] = place >= 0
     return visited, moved, flips, size == 0

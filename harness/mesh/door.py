@@ -50,6 +50,11 @@ class Improved:
     cells: Ints
     history: list[Sweep] = field(default_factory=list)
 
+    @property
+    def is_reconnected(self) -> bool:
+        """Whether the triangles are not those of the input."""
+        return self.flips > 0 or len(self.cells) != len(self.triangles)
+
     def as_dict(self) -> dict[str, Any]:
         """The figures by name, nested."""
         return {

@@ -34,8 +34,9 @@ def test_the_vector_rises_with_every_step(made, remedies) -> None:
     stars, free = mesh.stars, ~mesh.fixed
     x, y = np.ldexp(points, -4).T.copy()
     last = vector(points, triangles, mesh.free, any(remedies))
+    waiting = free.copy()
     for _ in range(60):
-        _, moved, flips, done = greedy(mesh.free, *stars, free, x, y, *remedies, 10**6, 1)
+        _, moved, flips, done = greedy(waiting, *stars, free, x, y, *remedies, 10**6, 1)
         now_points, now = np.column_stack([x, y]), triangles_of(*stars, len(x))
         assert is_positive(now_points, now)
         if moved or flips:
@@ -46,10 +47,6 @@ def test_the_vector_rises_with_every_step(made, remedies) -> None:
             last = found
         if done:
             break
-    # One step at a time, the queue begins anew; nothing is left only if nothing rises.
-    if done and not moved:
-        again = greedy(mesh.free, *stars, free, x, y, *remedies, 10**6, 10**6)
-        assert again[1] == again[2] == 0
 
 
 def test_one_free_vertex_goes_to_the_peak() -> None:
