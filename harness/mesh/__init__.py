@@ -3,7 +3,7 @@
 * :func:`improve`: points and triangles in, better ones out, by several methods.
 * :class:`Mesh`: a checked triangulation.
 * :func:`read_mesh`, :func:`write_mesh`: files of all formats of meshio, their data kept.
-* :func:`quality`: the figures by which meshes are compared.
+* :func:`quality_of`: the figures by which meshes are compared.
 
 Everything is imported when first asked for, as compiled code takes a moment to load.
 """
@@ -19,19 +19,19 @@ if TYPE_CHECKING:
     from harness.mesh.files import write_mesh as write_mesh
     from harness.mesh.mesh import Mesh as Mesh
     from harness.mesh.quality import Quality as Quality
-    from harness.mesh.quality import quality as quality
+    from harness.mesh.quality import quality_of as quality_of
 
 _HOMES = {
     "Improved": "door",
     "Mesh": "mesh",
     "Quality": "quality",
     "improve": "door",
-    "quality": "quality",
+    "quality_of": "quality",
     "read_mesh": "files",
     "write_mesh": "files",
 }
 
-__all__ = ["Improved", "Mesh", "Quality", "improve", "quality", "read_mesh", "write_mesh"]
+__all__ = ["Improved", "Mesh", "Quality", "improve", "quality_of", "read_mesh", "write_mesh"]
 
 
 def __getattr__(name: str) -> Any:

@@ -228,9 +228,7 @@ def greedy(waiting, offsets, degrees, ring, closed, free, x, y, bisector, chord,
     """
     order = np.flatnonzero(waiting)
     rim = bisector or chord
-    n, widest = len(degrees), 0
-    for v in range(n):
-        widest = max(widest, offsets[v + 1] - offsets[v])
+    n, widest = len(degrees), int(np.diff(offsets).max())
     rx, ry, angles = np.empty(widest), np.empty(widest), np.empty(3 * widest)
     work, row, peak = np.empty((4, widest)), np.zeros((4, 4)), np.zeros(4)
     basis, nu, chosen = np.full(4, -1), np.zeros(3), np.full(3, -1)

@@ -14,7 +14,7 @@ from harness.geometry.predicates import orientations
 from harness.mesh.mesh import Mesh
 from harness.mesh.methods import GUARDED, run
 from harness.mesh.options import Options
-from harness.mesh.quality import Quality, quality
+from harness.mesh.quality import Quality, quality_of
 from harness.mesh.stars import Ints
 from harness.mesh.state import Sweep, state_of
 from harness.mesh.validation import Floats
@@ -128,8 +128,8 @@ def improve_mesh(
     return Improved(
         points=better,
         triangles=state.triangles,
-        before=quality(mesh.points, mesh.triangles),
-        after=quality(better, state.triangles),
+        before=quality_of(mesh.points, mesh.triangles),
+        after=quality_of(better, state.triangles),
         visits=state.visits,
         moves=state.moves,
         flips=state.flips,

@@ -67,7 +67,7 @@ def corner_angles(points: npt.ArrayLike, triangles: npt.ArrayLike) -> Floats:
     return angles
 
 
-def quality(points: npt.ArrayLike, triangles: npt.ArrayLike) -> Quality:
+def quality_of(points: npt.ArrayLike, triangles: npt.ArrayLike) -> Quality:
     """The figures of a mesh: ``points`` (n, 2), counter-clockwise ``triangles`` (m, 3); O(m)."""
     least = least_angles(points, triangles)
     low, five = np.percentile(least, [1, 5]).tolist()

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from harness.mesh.mesh import Mesh
-from harness.mesh.quality import Quality, least_angles, quality
+from harness.mesh.quality import Quality, least_angles, quality_of
 from harness.mesh.stars import Flags, Ints, Stars, coloured, triangles_of
 from harness.mesh.validation import Floats
 
@@ -83,7 +83,7 @@ class State:
     def record(self, stage: str) -> None:
         """Note what the mesh looks like now, and tell who wants to know."""
         seconds = time.perf_counter() - self.begin
-        now = quality(self.points, self.triangles)
+        now = quality_of(self.points, self.triangles)
         self.history.append(Sweep(len(self.history) + 1, stage, now, self.moves, seconds))
         if self.tell is not None:
             self.tell(self.history[-1])
@@ -117,7 +117,8 @@ def state_of(
 ) -> Iterator[State]:
     """The state of a mesh whose coordinates are at most 1 in absolute value."""
     free = ~mesh.fixed
-    stars = Stars(*(array.copy() for array in mesh.stars))
+    given = mesh.stars
+    stars = Stars(given.offsets, given.degrees.copy(), given.ring.copy(), given.closed.copy())
     order, colours = coloured(*stars[:3], free)
     x, y = (np.ascontiguousarray(mesh.points[:, k]).copy() for k in (0, 1))
     with ThreadPoolExecutor(workers or len(os.sched_getaffinity(0))) as pool:

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 
-from harness.mesh.quality import least_angles, quality
+from harness.mesh.quality import least_angles, quality_of
 
 BEST = 60.0
 """Degrees: no triangle has a greater smallest angle."""
@@ -36,7 +36,7 @@ def render_mesh(
         try:
             shown = draw_mesh(axes, points, triangles, width)
             figure.colorbar(shown, ax=axes, shrink=0.7, label="smallest angle of the triangle (°)")
-            found = quality(points, triangles)
+            found = quality_of(points, triangles)
             axes.set_title(title)
             axes.set_xlabel(
                 f"{len(triangles)} triangles, smallest angle {found.smallest:.2f}°, "

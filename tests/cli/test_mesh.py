@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from harness.cli.main import main
-from harness.mesh import quality, read_mesh
+from harness.mesh import quality_of, read_mesh
 from tests.mesh.meshes import random_mesh
 
 
@@ -33,7 +33,7 @@ def test_improve_writes_a_better_mesh_and_says_so(source, tmp_path, capsys) -> N
     shown = capsys.readouterr()
     record = json.loads(shown.out)
     mesh = read_mesh(out).mesh
-    assert record["after"] == pytest.approx(quality(mesh.points, mesh.triangles).as_dict())
+    assert record["after"] == pytest.approx(quality_of(mesh.points, mesh.triangles).as_dict())
     assert record["after"]["smallest"] > record["before"]["smallest"]
     assert (record["complete"], record["inverted"]) == (True, 0)
     assert "smallest" in shown.err
@@ -54,8 +54,8 @@ def test_a_time_limit_of_nothing_keeps_the_mesh(source, tmp_path, capsys) -> Non
     assert main(["mesh", "improve", str(source), str(out), "--time-limit", "0"]) == 0
     assert "best mesh so far" in capsys.readouterr().err
     before, after = read_mesh(source).mesh, read_mesh(out).mesh
-    assert quality(after.points, after.triangles).smallest >= (
-        quality(before.points, before.triangles).smallest - 1e-9
+    assert quality_of(after.points, after.triangles).smallest >= (
+        quality_of(before.points, before.triangles).smallest - 1e-9
     )
 
 
