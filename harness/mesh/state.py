@@ -73,6 +73,18 @@ class State:
         """The least angle of each triangle, increasing, in degrees."""
         return np.sort(least_angles(self.points, self.triangles))
 
+    def kept(self) -> tuple[Any, ...]:
+        """All that changes, to be restored."""
+        arrays = (self.x, self.y, *self.stars[1:])
+        return (*(array.copy() for array in arrays), self.flips)
+
+    def restore(self, kept: tuple[Any, ...]) -> None:
+        """Go back to what was kept."""
+        for array, old in zip((self.x, self.y, *self.stars[1:]), kept[:-1], strict=True):
+            array[:] = old
+        if self.flips != kept[-1]:
+            self.reconnect(kept[-1] - self.flips)
+
     def reconnect(self, flips: int) -> None:
         """Read triangles and colours off the stars again, after so many flips of edges."""
         if flips:
