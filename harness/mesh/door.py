@@ -16,8 +16,11 @@ from harness.mesh.methods import GUARDED, run
 from harness.mesh.options import Options
 from harness.mesh.quality import Quality, quality_of
 from harness.mesh.stars import Ints
-from harness.mesh.state import Sweep, state_of
+from harness.mesh.state import Sweep, state_of, with_places
 from harness.mesh.validation import Floats
+
+PLACES, LEAST_PLACES = 4, 16
+"""One new vertex for so many free ones is possible, and at least so many."""
 
 
 class InvertedTriangle(ArithmeticError):
@@ -30,7 +33,8 @@ class Improved:
 
     ``points``: (n, 2).  ``triangles``: (m, 3), counter-clockwise.  ``before``, ``after``: figures
     in degrees.  ``moves`` of vertices and ``visits``, among them those that moved nothing;
-    ``flips`` of edges.  ``inverted``: triangles that are not positive, 0 but for ``laplacian``.
+    ``flips`` of edges and other changes of
+    connectivity.  ``inverted``: triangles that are not positive, 0 but for ``laplacian``.
     ``seconds``: of the improvement alone.  ``history``: a record of every sweep.  ``complete``:
     False if the time limit came first.  ``vertices`` (n,) and ``cells`` (m,): the old vertex and
     the old triangle whose data a new one takes.
@@ -118,26 +122,37 @@ def improve_mesh(
     deadline = np.inf if time_limit is None else time.monotonic() + time_limit
     exponent = int(np.frexp(np.abs(mesh.points).max(initial=0.0))[1])  # then all are in [−1, 1]
     small = Mesh(np.ldexp(mesh.points, -exponent), mesh.triangles, mesh.fixed, mesh.stars)
+    if options.topology == "full":
+        small = with_places(small, max(LEAST_PLACES, len(mesh.free) // PLACES))
+    n = len(mesh.points)
     with state_of(small, workers, deadline, tell) as state:
+        state.origins, state.born[0] = np.arange(len(small.points)), n
         complete = run(state, options) if options.sweeps and len(mesh.free) else True
-        moved = (state.points != small.points).any(axis=1, keepdims=True)
-        better = np.where(moved, np.ldexp(state.points, exponent), mesh.points)
-    inverted = _inverted(better, state.triangles)
+    places = np.ldexp(state.points, exponent)
+    stayed = (state.points[:n] == small.points[:n]).all(axis=1)
+    places[:n][stayed] = mesh.points[stayed]
+    used = state.stars.degrees > 0
+    used[:n] |= mesh.stars.degrees == 0
+    number = np.cumsum(used) - 1
+    better, triangles = places[used], state.triangles
+    if not used[:n].all() or len(better) != n:
+        triangles = number[triangles]
+    inverted = _inverted(better, triangles)
     if len(inverted) and options.objective in GUARDED:
         raise InvertedTriangle(f"triangle {inverted[0]} is not positive")
     return Improved(
         points=better,
-        triangles=state.triangles,
+        triangles=triangles,
         before=quality_of(mesh.points, mesh.triangles),
-        after=quality_of(better, state.triangles),
+        after=quality_of(better, triangles),
         visits=state.visits,
         moves=state.moves,
         flips=state.flips,
         inverted=len(inverted),
         seconds=time.perf_counter() - start,
         complete=complete,
-        vertices=np.arange(len(better)),
-        cells=_origins(mesh, better, state.triangles),
+        vertices=state.origins[used],
+        cells=_origins(mesh, better, triangles),
         history=state.history,
     )
 

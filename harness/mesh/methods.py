@@ -8,7 +8,7 @@ from harness.mesh.all_angles import improve_all
 from harness.mesh.apex import greedy
 from harness.mesh.baselines import ascent_sweep, laplacian_sweep, smart_sweep
 from harness.mesh.options import Options
-from harness.mesh.reconnected import improve_flipping
+from harness.mesh.reconnected import improve_flipping, improve_fully
 from harness.mesh.state import State
 
 PORTION = 4096
@@ -22,7 +22,9 @@ GUARDED = ("all", "apex", "smart-laplacian", "combined")
 
 def run(state: State, options: Options) -> bool:
     """Improve the state; whether there was nothing left to do, or the sweeps were used up."""
-    if options.topology != "fixed":
+    if options.topology == "full":
+        improve_fully(state, options.sweeps)
+    elif options.topology == "flip":
         improve_flipping(state, options.sweeps)
     elif options.objective == "all":
         improve_all(state, options.sweeps)

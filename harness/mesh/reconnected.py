@@ -1,10 +1,11 @@
-"""Topology ``flip``: better angles by exchanging edges as well."""
+"""Topologies ``flip`` and ``full``: better angles by exchanging edges, and by other vertices."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from harness.mesh.all_angles import SOFT, improve_all
+from harness.mesh.points import try_points
 from harness.mesh.soft import soft_sweep
 from harness.mesh.state import State, rises
 from harness.mesh.steps import even_out, ideal_degrees, lawson, try_flips
@@ -13,7 +14,7 @@ ROUNDS = 5
 """Times that degrees are evened out and vertices moved in turn."""
 GENTLE = 12.0
 FLOOR = np.radians(2.0)
-TARGET = np.radians(40.0)
+TARGET = np.radians(50.0)
 """Vertices with no smaller angle are good enough."""
 EFFORT = 3
 """Visits for flips that are tried, in multiples of those of all sweeps."""
@@ -44,6 +45,26 @@ def improve_flipping(state: State, sweeps: int) -> None:
     if not rises(before, state.least):
         state.restore(begin)
         improve_all(state, sweeps)
+
+
+def improve_fully(state: State, sweeps: int) -> None:
+    """The same, and then insertions and deletions of vertices around the worst ones.
+
+    The state must have places for new vertices, without triangles, after the others.
+    """
+    improve_flipping(state, sweeps)
+    waiting = state.free.copy()
+    left = EFFORT * sweeps * len(state.order)
+    arrays = (*state.stars, state.free, state.x, state.y, state.origins, state.born, TARGET)
+    while left > 0 and not state.is_late:
+        visits, moves, steps, done = try_points(waiting, *arrays, min(left, len(state.free)))
+        state.visits += visits
+        state.moves += moves
+        state.reconnect(steps)
+        state.record("vertices")
+        left -= max(visits, 1)
+        if done:
+            break
 
 
 def _try_flips(state: State, ideal: np.ndarray, sweeps: int) -> None:

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from harness.mesh.mesh import Mesh
+from harness.mesh.points import ROOM
 from harness.mesh.quality import Quality, least_angles, quality_of
 from harness.mesh.stars import Flags, Ints, Stars, coloured, triangles_of
 from harness.mesh.validation import Floats
@@ -39,7 +40,9 @@ class State:
     """A mesh while it is improved; its stars may change too, see :meth:`reconnect`.
 
     ``x``, ``y``: (n,), at most 1 in absolute value.  ``visits`` and ``moves`` count vertices that
-    were looked at and moved.  ``history``: a record of every sweep.
+    were looked at and moved.  ``origins``: (n,), for each vertex the one that it was made
+    beside, or itself; ``born``: (1,), the next place for a new one.  ``history``: a record of
+    every sweep.
     """
 
     triangles: Ints
@@ -56,6 +59,8 @@ class State:
     visits: int = 0
     moves: int = 0
     flips: int = 0
+    origins: Ints = field(default_factory=lambda: np.empty(0, dtype=np.int64))
+    born: Ints = field(default_factory=lambda: np.zeros(1, dtype=np.int64))
     history: list[Sweep] = field(default_factory=list)
 
     @property
@@ -135,6 +140,23 @@ def state_of(
     x, y = (np.ascontiguousarray(mesh.points[:, k]).copy() for k in (0, 1))
     with ThreadPoolExecutor(workers or len(os.sched_getaffinity(0))) as pool:
         yield State(mesh.triangles, stars, free, x, y, order, colours, pool, deadline, tell)
+
+
+def with_places(mesh: Mesh, count: int) -> Mesh:
+    """The same mesh with so many vertices at the end that have no triangles, and room for some."""
+    n, stars = len(mesh.points), mesh.stars
+    none = np.zeros(count, dtype=np.int64)
+    return Mesh(
+        np.concatenate([mesh.points, np.zeros((count, 2))]),
+        mesh.triangles,
+        np.concatenate([mesh.fixed, np.ones(count, dtype=np.bool_)]),
+        Stars(
+            np.concatenate([stars.offsets, stars.offsets[n] + ROOM * np.arange(1, count + 1)]),
+            np.concatenate([stars.degrees, none]),
+            np.concatenate([stars.ring, np.full(ROOM * count, -1)]),
+            np.concatenate([stars.closed, none.astype(np.bool_)]),
+        ),
+    )
 
 
 def rises(before: Floats, after: Floats) -> bool:
