@@ -8,6 +8,8 @@ triangles only leaves out conditions.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from harness.mesh.quality import corner_angles, least_angles
@@ -69,5 +71,6 @@ def _solve(corners: Ints, whole: Ints, totals: Floats) -> float:
     cost = np.zeros(3 * m + 1)
     cost[-1] = -1.0
     sums = np.concatenate([np.full(m, 180.0), totals])
-    found = linprog(cost, A_eq=matrix.tocsr(), b_eq=sums, bounds=(0, None), method="highs")
+    solve: Any = linprog  # its types know no sparse matrices
+    found = solve(cost, A_eq=matrix.tocsr(), b_eq=sums, bounds=(0, None), method="highs")
     return float(-found.fun) if found.status == 0 else np.inf
