@@ -134,28 +134,28 @@ def _list() -> int:
 def _run_meshes(args: argparse.Namespace) -> int:
     """Run the study of meshes, one after the other; exit status 0 or 130."""
     from harness.report.mesh_report import write_mesh_report
-    from harness.study.meshes import run_meshes
+    from harness.study.meshes import run_meshes, tasks
+    from harness.study.progress import Progress
 
     if args.engine != "local" or args.jobs is not None:
         args.usage_error("the study mesh runs one task after the other, on this machine")
     directory = args.out or Path("results") / MESHES
     try:
-        added = run_meshes(
-            directory,
-            mode=args.mode,
-            command=_command(args, f"--{args.mode}" if args.mode != "new" else None),
-            tell=lambda done, total: print(
-                f"\ravd: study mesh: {done} of {total}", end="", file=sys.stderr
-            ),
-        )
+        with Progress("study mesh", len(tasks()), {}) as progress:
+            added = run_meshes(
+                directory,
+                mode=args.mode,
+                command=_command(args, f"--{args.mode}" if args.mode != "new" else None),
+                tell=lambda done: progress.update({"ok": done}),
+            )
     except KeyboardInterrupt:
         print(
-            f"\navd: interrupted; rows are kept in {directory}; "
+            f"avd: interrupted; rows are kept in {directory}; "
             f"continue with: {_command(args, '--resume')}",
             file=sys.stderr,
         )
         return INTERRUPTED
-    print(f"\navd: {added} rows added in {directory}", file=sys.stderr)
+    print(f"avd: {added} rows added in {directory}", file=sys.stderr)
     if not args.no_report:
         page, lines = write_mesh_report(directory)
         print(f"report: {page}", *lines, sep="\n")

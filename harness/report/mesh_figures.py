@@ -12,15 +12,16 @@ from matplotlib.figure import Figure
 from harness.mesh.apex import greedy
 from harness.mesh.mesh import Mesh
 from harness.mesh.quality import corner_angles
-from harness.mesh.stars import triangles_of
 from harness.peak import peak
 from harness.report.style import BLUE, GREEN, GREY, PALE, VERMILLION
 
 Floats = npt.NDArray[np.float64]
 
 HULL = [(0, 0), (5, -1.2), (9, 0.5), (10, 5), (6.5, 8), (1.5, 7), (-1.5, 3.5)]
-INNER = [(1.2, 4.6), (6.9, 2.2), (4.6, 4.8)]
-STAR = [(0, 0), (4, -2.2), (7.5, 0.2), (6.4, 3.6), (8.6, 6.4), (3.2, 5.2), (-0.6, 5.4)]
+INNER = [(1.6, 6.0), (8.2, 2.0), (4.4, 1.2)]
+STAR = [(0, 0), (4, -2), (7.5, 0), (7, 3.5), (10.5, 6), (4.6, 5.2), (-0.6, 5.4)]
+EAR = 4
+"""The vertex of the star that a chord cuts off."""
 
 
 def plain(axes: Axes, points: Any, triangles: Any, label: str) -> None:
@@ -75,11 +76,13 @@ def draw_figure_6(figure: Figure) -> None:
     corners = np.array([[float(value) for value in corner] for corner in found])
     first.fill(*corners.T, color=GREEN, alpha=0.5)
     plain(second, points, fan, f"(b) from the peak: {corner_angles(points, fan).min():.1f}°")
-    mesh = Mesh.of(np.ldexp(points, -4), fan)
-    x, y = mesh.points.T.copy()
-    greedy(~mesh.fixed, *mesh.stars, ~mesh.fixed, x, y, False, True, 10**6, 10**6)
-    cut, now = triangles_of(*mesh.stars, n + 1), np.ldexp(np.column_stack([x, y]), 4)
-    plain(third, now, cut, f"(c) ears cut off: {corner_angles(now, cut).min():.1f}°")
+    inner = [i for i in range(n) if i != EAR]
+    other = peak(rim[inner].tolist())
+    now = np.concatenate([rim, [[other.x, other.y]]])
+    ear = ((EAR - 1) % n, EAR, (EAR + 1) % n)
+    sides = zip(inner, [*inner[1:], inner[0]], strict=True)
+    cut = np.array([*((a, b, n) for a, b in sides), ear])
+    plain(third, now, cut, f"(c) an ear cut off: {corner_angles(now, cut).min():.1f}°")
     for axes, place in ((first, points[n]), (second, points[n]), (third, now[n])):
         axes.plot(*place, "o", color=VERMILLION, markersize=5)
 

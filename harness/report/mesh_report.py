@@ -148,7 +148,7 @@ def _figures(rows: list[Row]) -> dict[str, Drawn]:
         mesh_figures.draw_figure_6,
         10,
         3.4,
-        "As the paper's Figure 6: a star's kernel, its triangulation, and chords that cut ears.",
+        "As the paper's Figure 6: a star's kernel, its triangulation, and one without an ear.",
     )
     return figures
 

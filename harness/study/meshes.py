@@ -87,12 +87,12 @@ def run_meshes(
     mode: str = "new",
     command: str = "avd study mesh",
     todo: list[MeshTask] | None = None,
-    tell: Callable[[int, int], None] | None = None,
+    tell: Callable[[int], None] | None = None,
 ) -> int:
     """Run the tasks without a row and store each row at once; how many rows were added.
 
     ``mode``: "new" refuses a directory with rows, "resume" and "retry" go on with them, "fresh"
-    puts them aside.  ``tell(done, total)`` is called after each task.
+    puts them aside.  ``tell(done)`` is called after each task.
 
     Raises:
         UserError: the directory is in use, or not this study's.
@@ -117,7 +117,7 @@ def run_meshes(
             with open(path, "a", encoding="utf-8") as file:
                 file.write(line.getvalue())
             if tell is not None:
-                tell(len(chosen) - len(missing) + done, len(chosen))
+                tell(len(chosen) - len(missing) + done)
     return len(missing)
 
 
