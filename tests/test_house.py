@@ -31,6 +31,7 @@ ROOMS = (
     "geometry",
     "diagram",
     "peak",
+    "mesh",
     "generators",
     "study",
     "bench",

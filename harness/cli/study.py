@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from harness.study.runner import Summary
     from harness.study.study_file import Study
 
+MESHES = "mesh"
+"""The built-in study of mesh improvement: its rows are meshes, not diagrams."""
 FAILED = 3
 INTERRUPTED = 130
 
@@ -93,6 +95,9 @@ def run(args: argparse.Namespace) -> int:
     if sys.platform == "win32":
         raise UserError("avd study needs a POSIX system (Linux, macOS): it limits memory")
 
+    if args.study == MESHES:
+        return _run_meshes(args)
+
     from harness.study.builtin import find_study
 
     study = find_study(args.study)
@@ -119,6 +124,41 @@ def _list() -> int:
 
     for name, study in builtin_studies().items():
         print(f"{name}\t{len(study.tasks)} tasks\t{study.description}")
+    from harness.study.meshes import DESCRIPTION as MESHES_DESCRIPTION
+    from harness.study.meshes import tasks
+
+    print(f"{MESHES}\t{len(tasks())} tasks\t{MESHES_DESCRIPTION}")
+    return 0
+
+
+def _run_meshes(args: argparse.Namespace) -> int:
+    """Run the study of meshes, one after the other; exit status 0 or 130."""
+    from harness.report.mesh_report import write_mesh_report
+    from harness.study.meshes import run_meshes, tasks
+    from harness.study.progress import Progress
+
+    if args.engine != "local" or args.jobs is not None:
+        args.usage_error("the study mesh runs one task after the other, on this machine")
+    directory = args.out or Path("results") / MESHES
+    try:
+        with Progress("study mesh", len(tasks()), {}) as progress:
+            added = run_meshes(
+                directory,
+                mode=args.mode,
+                command=_command(args, f"--{args.mode}" if args.mode != "new" else None),
+                tell=lambda done: progress.update({"ok": done}),
+            )
+    except KeyboardInterrupt:
+        print(
+            f"avd: interrupted; rows are kept in {directory}; "
+            f"continue with: {_command(args, '--resume')}",
+            file=sys.stderr,
+        )
+        return INTERRUPTED
+    print(f"avd: {added} rows added in {directory}", file=sys.stderr)
+    if not args.no_report:
+        page, lines = write_mesh_report(directory)
+        print(f"report: {page}", *lines, sep="\n")
     return 0
 
 

@@ -41,6 +41,17 @@ def validate(instance: Instance) -> None:
         _refuse_pair(instance, *sorted(pair))
 
 
+def first_conflict(instance: Instance) -> tuple[int, int] | None:
+    """Two different segments of positive length that cross or overlap, or None.
+
+    That an endpoint of one lies inside another is no conflict.  Exact, O(n log n) expected time.
+    """
+    if instance.n < 2:
+        return None
+    rank, representative = _ranks(instance)
+    return _first_conflict(instance, np.sort(rank.reshape(-1, 2), axis=1), representative)
+
+
 def _refuse(instance: Instance, reason: str) -> NoReturn:
     raise UserError(f"{instance.label}: {reason}")
 

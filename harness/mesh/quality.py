@@ -1,0 +1,74 @@
+"""The figures by which meshes are compared: the least angle of each triangle."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from harness.geometry.jit import compiled
+from harness.mesh.angles import triangle_least
+from harness.mesh.stars import Ints
+from harness.mesh.validation import Floats
+
+
+@dataclass(frozen=True)
+class Quality:
+    """Of the least angles of all triangles, in degrees: least, percentiles and mean."""
+
+    smallest: float
+    percentile_1: float
+    percentile_5: float
+    mean: float
+
+    def as_dict(self) -> dict[str, float]:
+        """The figures by name."""
+        return asdict(self)
+
+
+def least_angles(points: npt.ArrayLike, triangles: npt.ArrayLike) -> Floats:
+    """The least angle of each counter-clockwise triangle, in degrees; 0 if it is not positive.
+
+    ``points``: (n, 2); ``triangles``: (m, 3).
+    """
+    xy = np.ascontiguousarray(points, dtype=np.float64)
+    exponent = int(np.frexp(np.abs(xy).max(initial=0.0))[1])
+    least: Floats = _least(np.ldexp(xy, -exponent), np.asarray(triangles, dtype=np.int64))
+    return least
+
+
+@compiled
+def _least(xy, triangles):
+    least = np.empty(len(triangles))
+    for t in range(len(triangles)):
+        a, b, c = triangles[t]
+        least[t] = np.degrees(
+            triangle_least(xy[a, 0], xy[a, 1], xy[b, 0], xy[b, 1], xy[c, 0], xy[c, 1])
+        )
+    return least
+
+
+def corner_angles(points: npt.ArrayLike, triangles: npt.ArrayLike) -> Floats:
+    """The three angles (m, 3) of each triangle, in degrees, at its vertices in their order."""
+    xy = np.asarray(points, dtype=np.float64)
+    corners: Ints = np.asarray(triangles)
+    places = xy[corners]
+    places = places - places[:, :1]
+    size = np.abs(places).max(axis=(1, 2), keepdims=True)
+    with np.errstate(invalid="ignore"):
+        places = places / size
+    angles = np.empty((len(corners), 3))
+    for k in range(3):
+        u = places[:, (k + 1) % 3] - places[:, k]
+        w = places[:, (k + 2) % 3] - places[:, k]
+        cross = u[:, 0] * w[:, 1] - u[:, 1] * w[:, 0]
+        angles[:, k] = np.degrees(np.arctan2(cross, (u * w).sum(axis=1)))
+    return angles
+
+
+def quality_of(points: npt.ArrayLike, triangles: npt.ArrayLike) -> Quality:
+    """The figures of a mesh: ``points`` (n, 2), counter-clockwise ``triangles`` (m, 3); O(m)."""
+    least = least_angles(points, triangles)
+    low, five = np.percentile(least, [1, 5]).tolist()
+    return Quality(float(least.min()), low, five, float(least.mean()))

@@ -1,0 +1,147 @@
+"""Improving all angles: never worse, never inverted, and as good as what is known."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from harness.errors import UserError
+from harness.geometry.predicates import orientations
+from harness.mesh import improve
+from harness.mesh.quality import corner_angles, least_angles
+from harness.mesh.state import rises
+from tests.mesh.meshes import grid_mesh, hexagons, needle, random_mesh, triangulations
+
+
+def is_positive(points: np.ndarray, triangles: np.ndarray) -> bool:
+    return bool((orientations(*(points[triangles[:, k]] for k in range(3))) > 0).all())
+
+
+@settings(max_examples=40)
+@given(triangulations(), st.integers(0, 6))
+def test_the_mesh_is_never_worse_and_never_inverted(made, sweeps) -> None:
+    points, triangles = made
+    better = improve(points, triangles, sweeps=sweeps)
+    before = np.sort(least_angles(points, triangles))
+    after = np.sort(least_angles(better.points, triangles))
+    assert is_positive(better.points, triangles)
+    assert rises(before, after) or (better.points == points).all()
+    assert better.after.smallest >= better.before.smallest - 1e-9
+
+
+@given(triangulations(), st.data())
+def test_fixed_vertices_stay(made, data) -> None:
+    points, triangles = made
+    fixed = data.draw(st.lists(st.integers(0, len(points) - 1)))
+    better = improve(points, triangles, fixed=fixed, sweeps=3)
+    rim = (points == points.min(axis=0)) | (points == points.max(axis=0))
+    stay = rim.any(axis=1) | np.isin(np.arange(len(points)), fixed)
+    assert (better.points[stay] == points[stay]).all()
+
+
+@pytest.mark.parametrize("exponent", [-900, -300, 300, 900])
+def test_scale_does_not_matter(exponent) -> None:
+    points, triangles = random_mesh(60)
+    here = improve(points, triangles, sweeps=6)
+    there = improve(np.ldexp(points, exponent), triangles, sweeps=6)
+    assert (np.ldexp(there.points, -exponent) == here.points).all()
+    assert there.after == here.after
+
+
+@pytest.mark.parametrize("mesh", [hexagons(6), grid_mesh(6)], ids=["equilateral", "grid"])
+def test_what_is_optimal_does_not_move(mesh) -> None:
+    better = improve(*mesh)
+    assert np.abs(better.points - mesh[0]).max() < 1e-12
+    again = improve(better.points, mesh[1])
+    assert (again.points == better.points).all()
+
+
+@pytest.mark.parametrize("height", [1e-2, 1e-6, 1e-9])
+def test_needles_are_improved_too(height) -> None:
+    points, triangles = needle(height)
+    better = improve(points, triangles)
+    # By symmetry the best place is the centre, where all four acute angles are atan(height).
+    assert better.after.smallest == pytest.approx(np.degrees(np.arctan(height)), rel=0.05)
+    assert better.after.smallest > 2 * better.before.smallest
+    assert is_positive(better.points, triangles)
+
+
+def test_one_vertex_finds_the_best_point_of_its_star() -> None:
+    rng = np.random.default_rng(3)
+    angle = np.sort(rng.uniform(0, 2 * np.pi / 7, 7) + np.arange(7) * 2 * np.pi / 7)
+    radius = rng.uniform(0.8, 1.2, 7)
+    rim = np.column_stack([radius * np.cos(angle), radius * np.sin(angle)])
+    triangles = np.column_stack([np.arange(7), np.roll(np.arange(7), -1), np.full(7, 7)])
+
+    def least(p: tuple[float, float]) -> float:
+        return float(corner_angles(np.concatenate([rim, [p]]), triangles).min())
+
+    better = improve(np.concatenate([rim, [[0.05, 0.1]]]), triangles)
+    # A grid that closes in on the best point: the function is quasiconcave.
+    centre, reach = np.zeros(2), 0.5
+    for _ in range(40):
+        ticks = np.linspace(-reach, reach, 9)
+        tried = [(centre[0] + a, centre[1] + b) for a in ticks for b in ticks]
+        centre = np.array(max(tried, key=least))
+        reach *= 0.7
+    assert better.after.smallest == pytest.approx(least(tuple(centre)), abs=0.2)
+    assert better.after.smallest <= least(tuple(centre)) + 1e-6
+
+
+@pytest.mark.parametrize("workers", [2, 3])
+def test_the_result_does_not_depend_on_the_workers(workers) -> None:
+    points, triangles = random_mesh(6000)
+    one = improve(points, triangles, sweeps=3, workers=1)
+    more = improve(points, triangles, sweeps=3, workers=workers)
+    assert (one.points == more.points).all()
+
+
+def test_random_meshes_reach_what_is_asked() -> None:
+    better = improve(*random_mesh(1000))
+    assert better.after.smallest >= 29.5
+    assert better.after.percentile_1 >= 29
+    assert better.visits <= 21 * 1000
+
+
+def test_a_distorted_grid_becomes_regular() -> None:
+    assert improve(*grid_mesh(40, 0.24)).after.smallest >= 44.5
+
+
+def test_a_time_limit_returns_the_best_mesh_so_far() -> None:
+    points, triangles = random_mesh(300)
+    late = improve(points, triangles, time_limit=0.0)
+    assert not late.complete
+    assert (
+        rises(
+            np.sort(least_angles(points, triangles)), np.sort(least_angles(late.points, triangles))
+        )
+        or (late.points == points).all()
+    )
+    assert improve(points, triangles, time_limit=1e6).complete
+
+
+def test_sweeps_are_told_as_they_happen() -> None:
+    told = []
+    better = improve(*random_mesh(100), sweeps=10, tell=told.append)
+    assert told == better.history
+    assert [sweep.number for sweep in told] == list(range(1, len(told) + 1))
+    assert {sweep.stage for sweep in told} == {"soft", "patches"}
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"objective": "best"}, "objective 'best'"),
+        ({"objective": "apx"}, "did you mean 'apex'"),
+        ({"topology": "free"}, "topology 'free'"),
+        ({"remedy": "ear"}, "remedy 'ear'"),
+        ({"sweeps": -1}, "sweeps -1"),
+        ({"objective": "apex", "topology": "flip"}, "needs the objective 'all'"),
+        ({"remedy": "chord"}, "needs the objective 'apex'"),
+    ],
+)
+def test_wrong_options_are_named(options, message) -> None:
+    with pytest.raises(UserError, match=message):
+        improve(*grid_mesh(2), **options)
