@@ -1,21 +1,14 @@
 """Imported once by the server from which every task's process is forked, so forks start warm.
 
-A first build reads tables and compiled code that later ones find ready; done here, it is not
-timed in anybody's row.
+What a first build reads and compiles is not timed in anybody's row then, nor does the memory that
+compiling takes count against the limit of a task.
 """
 
 import contextlib
 
-
-def _warm_up() -> None:
-    from harness.diagram import BUILDERS
-    from harness.study.task import Task
-    from harness.study.worker import execute
-
-    for domain in ("kernel", "plane"):
-        execute(Task("convex-circle", 3, (), 0, 0, domain, "smallest", BUILDERS[0]))
-
+from harness.study.warming import compile_apart, warm_up
 
 # A builder that fails must fail in the tasks, with a row each, and not take the server down.
 with contextlib.suppress(Exception):
-    _warm_up()
+    compile_apart()
+    warm_up()
