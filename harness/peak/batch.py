@@ -56,7 +56,7 @@ def peaks(
     per processor; the result does not depend on it.
 
     No polygon stops the others: see :class:`Peaks` for ``status``.  About O(n) a polygon, a
-    microsecond or two for a hexagon.
+    few microseconds for a hexagon.
 
     Raises:
         UserError: what is no array of numbers, shapes that do not fit, offsets that decrease or

@@ -9,9 +9,6 @@ import numpy as np
 from harness.peak.circles import Ints
 from harness.peak.discs import Booleans, Judge, Slabs, Vertices, joined
 
-MOST_CROSSINGS = 8
-"""Four pairs of arcs cross in at most eight points."""
-
 
 class Gap(NamedTuple):
     """Between neighbouring vertices of two regions that are merged: their four arcs."""

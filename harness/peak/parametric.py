@@ -39,10 +39,11 @@ CLOSED = 1e-14
 """The width of the interval, relative to 1 + |c|, below which decisions would be rounding."""
 ROUNDS = 30
 RECENTRED = 4
+"""How often the search is begun, each time from coordinates rounded anew near its last end."""
 NEAR = 1e-5
 """How far, in radians, the search may end from the proven angle.  Where the optimum is close to a
 vertex, M(c) vanishes almost quadratically, and decisions are as accurate as the square root of
-rounding; far from the origin the search sees rounded coordinates."""
+rounding."""
 
 #: Comparisons of a batch: from levels (k, 1) or (1, m), and the numbers of m comparisons, to the
 #: values whose signs are wanted, (k, m) or (1, m).
