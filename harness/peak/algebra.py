@@ -26,7 +26,7 @@ from flint import arb, ctx, fmpq_poly, fmpz_poly
 
 from harness.diagram.roots import real_root_balls
 from harness.geometry.exact import ExactPoint
-from harness.peak.rational import Edge, cap, forms, rational_bounds
+from harness.peak.rational import Edge, cap, forms, rational_bounds, turn
 
 BITS = (128, 512, 2048)
 C = fmpq_poly([0, 1])
@@ -236,7 +236,7 @@ def decide_at_vertex(edges: Sequence[Edge], vertex: int) -> tuple[Root, list[int
         return None
     cotangents = {i: q / level for i, (q, level) in others.items()}
     greatest = max(cotangents.values())
-    own_cap = _cap(edges, *own)
+    own_cap = _cap(edges, vertex)
     order = own_cap.sign(C - greatest)
     if order >= 0:
         return own_cap, sorted(
@@ -248,13 +248,10 @@ def decide_at_vertex(edges: Sequence[Edge], vertex: int) -> tuple[Root, list[int
     return (Root(linear, 0), sorted([*own, *tied])) if _surround(centres) else None
 
 
-def _cap(edges: Sequence[Edge], before: int, after: int) -> Root:
+def _cap(edges: Sequence[Edge], vertex: int) -> Root:
     """cot(π − γ/2) = −tan(turn/2), a root of s t² + 2 k t − s = 0 with t = tan(turn/2)."""
-    (ax, ay), (bx, by) = edges[before]
-    (cx, cy), (dx, dy) = edges[after]
-    ux, uy, vx, vy = bx - ax, by - ay, dx - cx, dy - cy
-    s, k = ux * vy - uy * vx, ux * vx + uy * vy
-    low, high = cap(edges, after, BITS[0])
+    s, k = turn(edges, vertex)
+    low, high = cap(edges, vertex, BITS[0])
     (root,) = roots_between(fmpq_poly([-s, -2 * k, s]), low, high)
     return root
 

@@ -30,7 +30,7 @@ def decided(polygon: Polygon, peak: Peak) -> Peak:
     for bits in BITS:
         if decision is not None:
             break
-        decision = _searched(polygon, edges, first, bits)
+        decision = _searched(edges, first, bits)
     if decision is None:
         raise ArithmeticError(f"{polygon.instance.label}: the basis could not be decided")
     root, tied = decision
@@ -41,11 +41,10 @@ def decided(polygon: Polygon, peak: Peak) -> Peak:
 
 
 def _searched(
-    polygon: Polygon, edges: Sequence[Edge], first: Sequence[int], bits: int
+    edges: Sequence[Edge], first: Sequence[int], bits: int
 ) -> tuple[Root, list[int]] | None:
     """The decision for the basis that a rational ascent of this accuracy ends with."""
-    _, capped = polygon.start
-    end = rational_ascent(edges, rational_start(edges, capped, bits), bits, first)
+    end = rational_ascent(edges, rational_start(edges, bits), bits, first)
     if end.vertex is not None:
         found = decide_at_vertex(edges, end.vertex)
         if found is not None:

@@ -23,7 +23,7 @@ from harness.peak.candidates import (
 )
 from harness.peak.polygon import Floats, Polygon
 from harness.peak.proof import prove
-from harness.peak.rational import forms
+from harness.peak.rational import cap, forms
 from harness.peak.result import Peak
 from harness.peak.sampling import Ascent, ascent_over
 
@@ -71,15 +71,11 @@ def vertex_candidates(polygon: Polygon) -> Iterator[Candidate]:
         if any(forms(edge, p)[1] < 0 for edge in edges):
             continue
         with ctx.workprec(BITS[0]):
-            (ax, ay), (bx, by) = edges[own[0]]
-            (cx, cy), (dx, dy) = edges[own[1]]
-            ux, uy, vx, vy = bx - ax, by - ay, dx - cx, dy - cy
-            turn = arb.atan2(arb(ux * vy - uy * vx), arb(ux * vx + uy * vy))
-            cap = (arb.pi() + turn) / 2
+            low, high = cap(edges, vertex, BITS[0])
+            least = arb.atan2(arb(1), arb(low).union(arb(high)))
             angles = angles_at(edges, *p)
             for k in own:
-                angles[k] = cap
-            least = cap
+                angles[k] = least
             for angle in angles:
                 least = least.min(angle)
             decide = tuple(k for k, angle in enumerate(angles) if angle.overlaps(least))

@@ -100,7 +100,7 @@ def _around_exact_points(polygon: Polygon, search: Search) -> _Found:
         best = _best_of(polygon, origin, end, start, capped, best)
         if best is not None and best.is_certified:
             return best
-    return _by_rationals(polygon, capped, named)
+    return _by_rationals(polygon, named)
 
 
 def _best_of(
@@ -141,10 +141,10 @@ def _at_vertex(n: int, corner: int, least: int | None) -> list[int]:
     return [2 * ((corner - 1) % n), 2 * corner, *([] if least is None else [2 * int(least)])]
 
 
-def _by_rationals(polygon: Polygon, capped: int, named: list[int]) -> _Found:
+def _by_rationals(polygon: Polygon, named: list[int]) -> _Found:
     """The third way."""
     edges = polygon.exact_edges
-    end = rational_ascent(edges, rational_start(edges, capped, BITS), BITS, named)
+    end = rational_ascent(edges, rational_start(edges, BITS), BITS, named)
     with ctx.workprec(2 * BITS):
         lower = float(angle_ball(end.reached).lower())
         upper = float(angle_ball(end.level).upper())

@@ -258,20 +258,31 @@ def cap(edges: Sequence[Edge], vertex: int, bits: int) -> tuple[Any, Any]:
 
     An edge beyond which the next one turns back (γ = 0 or 2π) has no finite cap.
     """
-    (ax, ay), (bx, by) = edges[vertex - 1]
-    (cx, cy), (dx, dy) = edges[vertex]
-    ux, uy, vx, vy = bx - ax, by - ay, dx - cx, dy - cy
-    s, k = ux * vy - uy * vx, ux * vx + uy * vy
+    s, k = turn(edges, vertex)
     with ctx.workprec(2 * bits + 64):
         size = arb(s * s + k * k).sqrt()  # of the two forms the one that does not cancel
         return rational_bounds(-s / (size + k) if k > 0 else (arb(k) - size) / s)
 
 
-def rational_start(edges: Sequence[Edge], capped: int, bits: int) -> Any:
-    """A rational level ≤ c*: cot(2π/n), or the cap of vertex ``capped`` (−1: none)."""
+def rational_start(edges: Sequence[Edge], bits: int) -> Any:
+    """A rational level ≤ c*: cot(2π/n), or the greatest cap of a vertex; O(n).
+
+    As in :func:`harness.peak.ascent.greatest_cap`, but none is overlooked.
+    """
     with ctx.workprec(2 * bits + 64):
-        lowest, _ = rational_bounds((2 * arb.pi() / len(edges)).cot())
-    return lowest if capped < 0 else max(lowest, cap(edges, capped, bits)[0])
+        greatest, _ = rational_bounds((2 * arb.pi() / len(edges)).cot())
+    for vertex in range(len(edges)):
+        if len(edges) == 3 or turn(edges, vertex)[0] <= 0:
+            greatest = max(greatest, cap(edges, vertex, bits)[0])
+    return greatest
+
+
+def turn(edges: Sequence[Edge], vertex: int) -> tuple[Any, Any]:
+    """Cross and dot product of the edges before and after the vertex at which an edge begins."""
+    (ax, ay), (bx, by) = edges[vertex - 1]
+    (cx, cy), (dx, dy) = edges[vertex]
+    ux, uy, vx, vy = bx - ax, by - ay, dx - cx, dy - cy
+    return ux * vy - uy * vx, ux * vx + uy * vy
 
 
 def angle_ball(c: Any) -> arb:

@@ -89,6 +89,14 @@ def test_spikes_around_a_tiny_kernel(n, thin):
         assert broken(vertices, found.lower, found.upper, found.point) is None
 
 
+def test_a_slit_whose_cap_doubles_do_not_see():
+    """An interior angle of nearly 2π: discs below its cap meet in that vertex and nowhere else."""
+    flat = [(0, 0), (-73, -53), (-24, -87), (-29, -110), (99, -85)]
+    thin = [(Fraction(x, 100), Fraction(y) / 10**42) for x, y in flat]
+    found = peak(thin)
+    assert broken(thin, found.lower, found.upper, found.point) is None
+
+
 @pytest.mark.parametrize("method", ["parametric", "diagram"])
 @pytest.mark.parametrize(
     "vertices", [tall(1e5), tall(1e9), spiky(4, 1e-9, 1), spiky(5, 1e-12, 2), spiky(6, 1e-6, 3)]

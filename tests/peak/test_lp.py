@@ -27,7 +27,7 @@ INTEGER_CIRCLE = [
 def enclosure_by_rationals(vertices) -> tuple[float, float]:
     """(lower, upper) by the rational ascent alone."""
     polygon = Polygon(Instance.from_arrays("polygon", vertices))
-    start = rational_start(polygon.exact_edges, polygon.start[1], 64)
+    start = rational_start(polygon.exact_edges, 64)
     end = rational_ascent(polygon.exact_edges, start, 64)
     return float(angle_ball(end.reached).lower()), float(angle_ball(end.level).upper())
 

@@ -61,7 +61,7 @@ def broken(vertices: Sequence, lower: float, upper: float, point: Sequence) -> s
     if not 0 <= upper - lower <= 1e-12:
         return f"[{lower!r}, {upper!r}] is no enclosure of 1e-12"
     polygon = Polygon(Instance.from_arrays("polygon", vertices))
-    start = rational_start(polygon.exact_edges, polygon.start[1], 90)
+    start = rational_start(polygon.exact_edges, 90)
     other = rational_ascent(polygon.exact_edges, start, 90).point
     for name, p in (("the point", point), ("a better point", [fraction(v) for v in other])):
         angles = angles_of(vertices, p)
