@@ -59,14 +59,14 @@ def distorted_grid(n: int, seed: int = 0) -> Made:
     """
     _check(n, 2)
     stream = Stream("distorted-grid", n, seed)
-    index = np.arange((n + 1) ** 2).reshape(n + 1, n + 1)
+    step = n + 1
+    index = np.arange(step * step).reshape(step, step)
     a, b, c, d = (
         x.ravel() for x in (index[:-1, :-1], index[:-1, 1:], index[1:, 1:], index[1:, :-1])
     )
     triangles = np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
-    x = [float(i % (n + 1)) for i in range((n + 1) ** 2)]
-    y = [float(i // (n + 1)) for i in range((n + 1) ** 2)]
-    step = n + 1
+    x = [float(i % step) for i in range(step * step)]
+    y = [float(i // step) for i in range(step * step)]
     ring = (1, step + 1, step, -1, -step - 1, -step)
     inner = index[1:-1, 1:-1].ravel().tolist()
     for _ in range(ROUNDS):
