@@ -76,6 +76,14 @@ class Corners:
         flat = [z for row in self.incident for z in row]
         return coordinates, np.array(self.weights), first, np.array(flat, dtype=np.int64)
 
+    def have_ends(self) -> np.ndarray:
+        """Whether each corner is the endpoint of a segment, (c,)."""
+        return np.array([any(z & 1 for z in row) for row in self.incident], dtype=bool)
+
+    def points(self) -> Floats:
+        """Coordinates (c, 2) as doubles; directions of corners at infinity."""
+        return np.array([[float(x), float(y)] for x, y in self.exact]).reshape(-1, 2)
+
 
 @dataclass(frozen=True, eq=False)
 class Roots:
@@ -106,7 +114,7 @@ class Roots:
         r = len(self.triangles)
         start = self.triangles[:, [1, 2, 0]].ravel().astype(np.int64)
         end = self.triangles[:, [2, 0, 1]].ravel().astype(np.int64)
-        size = len(self.corners.exact)
+        size = len(self.corners.weights)
         keys, back = start * size + end, end * size + start
         order = np.argsort(keys)
         if (np.diff(keys[order]) == 0).any():

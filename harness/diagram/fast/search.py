@@ -5,6 +5,7 @@ from __future__ import annotations
 from harness.diagram.counts import Domain, Objective
 from harness.diagram.fast import domains
 from harness.diagram.fast.build import Leaves, candidates_of, find_leaves
+from harness.diagram.fast.faces import arranged_roots
 from harness.diagram.fast.hubs import Hubs, find_hubs
 from harness.diagram.fast.plane import plane_roots
 from harness.diagram.fast.prepare import Prepared
@@ -34,7 +35,7 @@ def search(
     hubs = Hubs()
     sense = 1.0 if objective == "smallest" else -1.0
     for _ in range(ROUNDS):
-        roots, spans = _roots(prepared, domain, found, seed, hubs)
+        roots, spans = _roots(prepared, domain, found, sense, seed, hubs)
         leaves, ties = _settled(prepared, roots, spans, domain, sense, found, hubs, workers)
         if not find_hubs(prepared.instance, roots, leaves, sense, hubs):
             return roots, leaves, ties
@@ -42,10 +43,12 @@ def search(
 
 
 def _roots(
-    prepared: Prepared, domain: Domain, found: Kernel | None, seed: int, hubs: Hubs
+    prepared: Prepared, domain: Domain, found: Kernel | None, sense: float, seed: int, hubs: Hubs
 ) -> tuple[Roots, list[tuple[int, int]]]:
     points = list(hubs.points)
     if domain == "plane":
+        if sense > 0:
+            return arranged_roots(prepared, seed, points, list(hubs.directions)), []
         return plane_roots(prepared.instance, seed, points, list(hubs.directions)), []
     assert found is not None
     if domain == "kernel":
@@ -67,7 +70,7 @@ def _settled(
     ties: Ties = ties_at_hubs(prepared.instance, roots, hubs.points, hubs.directions)
     definite = domain == "kernel"
     while True:
-        first, rows = tie_arrays(ties, len(roots.corners.exact))
+        first, rows = tie_arrays(ties, len(roots.corners.weights))
         world = (prepared.lines, prepared.lengths, prepared.classes, first, rows)
         candidates = candidates_of(prepared, roots, found, spans, sense, definite, world)
         leaves = find_leaves(prepared, roots, candidates, definite, sense, workers, world)

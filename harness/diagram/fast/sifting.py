@@ -120,7 +120,7 @@ def sift_kernel(chain, m, n, segments, size, sense, world):
     kept = n
     for a in range(n):
         ids[a] = a
-    kept = _sift_box(ids, kept, box, three, ones, segments, size, sense, world, w)
+    kept = sift_box(ids, kept, box, three, ones, segments, size, sense, True, world, w)
     flat = grown(flat, used + kept)
     flat[used : used + kept] = ids[:kept]
     first, count = used, kept
@@ -137,7 +137,7 @@ def sift_kernel(chain, m, n, segments, size, sense, world):
         low, high, first, count = stack[top]
         _box(chain, 2 * low, 2 * high, size, box)
         ids[:count] = flat[first : first + count]
-        kept = _sift_box(ids, count, box, three, ones, segments, size, sense, world, w)
+        kept = sift_box(ids, count, box, three, ones, segments, size, sense, True, world, w)
         flat = grown(flat, used + kept)
         flat[used : used + kept] = ids[:kept]
         first, count = used, kept
@@ -156,16 +156,16 @@ def sift_kernel(chain, m, n, segments, size, sense, world):
 
 
 @compiled
-def _sift_box(ids, m, box, three, ones, segments, size, sense, world, w):
+def sift_box(ids, m, box, three, ones, segments, size, sense, definite, world, w):
     """Keep the candidates that may win in a rectangle: in one of its two triangles."""
     if m <= 1:
         return m
     both = np.empty(m, np.int64)
     both[:] = ids[:m]
     three[0], three[1], three[2] = box[0], box[1], box[2]
-    one = sift(ids, m, three, ones, 0, segments, size, sense, True, world, w)
+    one = sift(ids, m, three, ones, 0, segments, size, sense, definite, world, w)
     three[0], three[1], three[2] = box[0], box[2], box[3]
-    two = sift(both, m, three, ones, 0, segments, size, sense, True, world, w)
+    two = sift(both, m, three, ones, 0, segments, size, sense, definite, world, w)
     merged = np.empty(one + two, np.int64)
     merged[:one] = ids[:one]
     merged[one:] = both[:two]

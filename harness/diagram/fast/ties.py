@@ -45,7 +45,11 @@ def ties_at_hubs(
     for corner, (point, weight) in enumerate(
         zip(roots.corners.exact, roots.corners.weights, strict=True)
     ):
-        ids = points.get(point, ()) if weight else directions.get(point, ())
+        if weight:
+            ids = points.get(point, ())
+        else:
+            size = max(abs(point[0]), abs(point[1]))
+            ids = directions.get((point[0] / size, point[1] / size), ())
         found |= set(_ties(instance, roots, corner, ids))
     return found
 

@@ -1,0 +1,216 @@
+"""Corners of the root triangles of an arrangement: very many, so in arrays, exact when asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
+from typing import Generic, TypeVar, overload
+
+import numpy as np
+
+from harness.diagram.fast.lines import Lines, Points
+from harness.diagram.fast.prepare import Prepared
+from harness.diagram.fast.roots import Floats, Ints, double_double
+from harness.diagram.planar_map import RationalPoint
+
+T = TypeVar("T")
+
+
+class _Computed(Sequence[T], Generic[T]):
+    """A sequence whose members are computed when asked for."""
+
+    def __init__(self, length: int) -> None:
+        self._length = length
+
+    def _at(self, index: int) -> T:
+        raise NotImplementedError
+
+    def __len__(self) -> int:
+        return self._length
+
+    @overload
+    def __getitem__(self, index: int) -> T: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[T]: ...
+    def __getitem__(self, index: int | slice) -> T | list[T]:
+        if isinstance(index, slice):
+            return [self._at(k) for k in range(*index.indices(self._length))]
+        if not -self._length <= index < self._length:
+            raise IndexError(index)
+        return self._at(index % self._length)
+
+    def __iter__(self) -> Iterator[T]:
+        return (self._at(k) for k in range(self._length))
+
+
+class _Rows(_Computed[list[int]]):
+    """The rows of a CSR matrix of numbers."""
+
+    def __init__(self, first: Ints, flat: Ints) -> None:
+        super().__init__(len(first) - 1)
+        self.first, self.flat = first, flat
+
+    def _at(self, index: int) -> list[int]:
+        row: list[int] = self.flat[self.first[index] : self.first[index + 1]].tolist()
+        return row
+
+
+class _Exact(_Computed[RationalPoint]):
+    """Points of lines first, then points that were added."""
+
+    def __init__(self, corners: ArrangedCorners) -> None:
+        super().__init__(len(corners.weights))
+        self.corners = corners
+
+    def _at(self, index: int) -> RationalPoint:
+        return self.corners.exact_corner(index)
+
+
+class ArrangedCorners:
+    """Corners as in :class:`harness.diagram.fast.roots.Corners`: the points on the lines, numbered
+    as there, and after them points, at infinity or not, that are added.
+
+    ``frame`` (c, 4): coordinates about the instance's centre times its scale, as double-doubles.
+    """
+
+    def __init__(self, prepared: Prepared, lines: Lines, points: Points) -> None:
+        """Raises nothing; O(points)."""
+        self.prepared, self.lines, self.pairs = prepared, lines, points.pairs
+        self._others = points.others
+        self.frame = self._frame_of_points()
+        self.weights: Floats = np.ones(len(points.pairs))
+        self._first, self._flat = _incidences(lines, points)
+        self.special: np.ndarray = np.diff(self._first) > 0
+        self._exactly: dict[int, RationalPoint] = {}
+
+    # -- adding -----------------------------------------------------------------------------------
+
+    def add(
+        self,
+        point: RationalPoint,
+        incident: Sequence[int] = (),
+        weight: float = 1.0,
+        special: bool = False,
+    ) -> int:
+        """Add a corner; its number."""
+        centre, scale = self.prepared.centre, self.prepared.scale
+        row = []
+        for axis in range(2):
+            value = point[axis] - centre[axis] if weight else point[axis]
+            row += double_double(value * scale)
+        number = self._extend(np.array([row]), weight, special, incident)
+        self._exactly[number] = point
+        return number
+
+    def add_free(self, frame: Floats) -> int:
+        """Add free points, given exactly by their coordinates (k, 2) in the frame; the first's
+        number."""
+        rows = np.zeros((len(frame), 4))
+        rows[:, 0::2] = frame
+        return self._extend(rows, 1.0, special=False)
+
+    def replace(self, number: int, point: RationalPoint) -> None:
+        """Move a free point."""
+        self._exactly[number] = point
+        for axis in range(2):
+            value = (point[axis] - self.prepared.centre[axis]) * self.prepared.scale
+            self.frame[number, 2 * axis : 2 * axis + 2] = double_double(value)
+
+    def _extend(
+        self, rows: Floats, weight: float, special: bool, incident: Sequence[int] = ()
+    ) -> int:
+        number, count = len(self.weights), len(rows)
+        self.frame = np.concatenate([self.frame, rows])
+        self.weights = np.concatenate([self.weights, np.full(count, weight)])
+        self.special = np.concatenate([self.special, np.full(count, special)])
+        self._flat = np.concatenate([self._flat, np.array(incident, dtype=np.int64)])
+        self._first = np.concatenate([self._first, np.full(count, len(self._flat))])
+        return number
+
+    # -- reading ----------------------------------------------------------------------------------
+
+    @property
+    def exact(self) -> Sequence[RationalPoint]:
+        """The exact coordinates of each corner."""
+        return _Exact(self)
+
+    @property
+    def incident(self) -> Sequence[list[int]]:
+        """The incident segments of each corner: 2·segment, + 1 if it is an endpoint."""
+        return _Rows(self._first, self._flat)
+
+    def exact_corner(self, index: int) -> RationalPoint:
+        """The exact coordinates of a corner."""
+        known = self._exactly.get(index)
+        if known is not None:
+            return known
+        centre, scale = self.prepared.centre, self.prepared.scale
+        if index >= len(self.pairs):
+            x, y = (Fraction(float(v)) / scale for v in self.frame[index, 0::2])
+            return centre[0] + x, centre[1] + y
+        i, j = self.pairs[index].tolist()
+        if i < 0:
+            x, y = self._others[j]
+            return centre[0] + x / self.lines.unit, centre[1] + y / self.lines.unit
+        x, y, w = self.lines.crossing(i, j)
+        w *= self.lines.unit
+        return centre[0] + Fraction(x, w), centre[1] + Fraction(y, w)
+
+    def arrays(self, centre: RationalPoint, scale: Fraction) -> tuple[Floats, Floats, Ints, Ints]:
+        """As of :class:`harness.diagram.fast.roots.Corners`, with that centre and scale."""
+        assert (centre, scale) == (self.prepared.centre, self.prepared.scale)
+        return self.frame, self.weights, self._first, self._flat
+
+    def have_ends(self) -> np.ndarray:
+        """Whether each corner is the endpoint of a segment, (c,)."""
+        found = np.zeros(len(self.weights), dtype=bool)
+        found[np.repeat(np.arange(len(found)), np.diff(self._first))[self._flat & 1 == 1]] = True
+        return found
+
+    def points(self) -> Floats:
+        """Coordinates (c, 2) as doubles; directions of corners at infinity."""
+        about = np.array([float(c) for c in self.prepared.centre])
+        rounded: Floats = self.frame[:, 0::2] / float(self.prepared.scale)
+        rounded += about * self.weights[:, None]
+        return rounded
+
+    def _frame_of_points(self) -> Floats:
+        """Coordinates of the points on lines in the frame, each with an error of 2⁻¹⁰⁵ of it."""
+        lines, scale = self.lines, self.prepared.scale
+        up, down = scale.numerator, scale.denominator * lines.unit
+        frame = np.empty((len(self.pairs), 4))
+        crossing = lines.crossing
+        for k, (i, j) in enumerate(self.pairs.tolist()):
+            if i >= 0:
+                x, y, w = crossing(i, j)
+                if w < 0:
+                    x, y, w = -x, -y, -w
+            else:
+                other = self._others[j]
+                w = other[0].denominator * other[1].denominator
+                x, y = int(other[0] * w), int(other[1] * w)
+            w *= down
+            frame[k] = *_quotient(x * up, w), *_quotient(y * up, w)
+        return frame
+
+
+def _quotient(x: int, w: int) -> tuple[float, float]:
+    """x/w as a double-double, for w > 0."""
+    high = x / w
+    p, q = high.as_integer_ratio()
+    return high, (x * q - p * w) / (w * q)
+
+
+def _incidences(lines: Lines, points: Points) -> tuple[Ints, Ints]:
+    """The segments whose line passes through each point, and which of them end there (CSR)."""
+    sizes = np.array([len(members) for members in lines.segments])
+    firsts = np.cumsum(sizes) - sizes
+    flat = np.array([k for members in lines.segments for k in members], dtype=np.int64)
+    times = sizes[points.line]
+    vertex = np.repeat(points.vertex, times)
+    starts = np.repeat(np.cumsum(times) - times, times)
+    segment = flat[np.repeat(firsts[points.line], times) + np.arange(len(vertex)) - starts]
+    entry = 2 * segment + (points.ends[segment] == vertex[:, None]).any(axis=1)
+    order = np.lexsort((entry, vertex))
+    first = np.searchsorted(vertex[order], np.arange(len(points.pairs) + 1))
+    return first.astype(np.int64), entry[order]
