@@ -207,6 +207,7 @@ def candidates_of(
     sense: float,
     definite: bool,
     world: World,
+    workers: int,
 ) -> tuple[Ints, Ints, Ints]:
     """Candidates of every root: first, count, and all of them."""
     n, m = prepared.instance.n, len(found.sides) if found else 0
@@ -231,6 +232,7 @@ def candidates_of(
             sense,
             definite,
             world,
+            workers,
         )
     first, flat = sift_regions(
         roots.regions,

@@ -162,7 +162,10 @@ def _resolve(
         places = np.flatnonzero((corner[order] == corner_here) & (turn[order] == turn_here))
         exact = {}
         for k in order[places].tolist():
-            middle = [sum(column, Fraction(0)) for column in zip(*leaves.weights(int(row[k])), strict=True)]
+            middle = [
+                sum(column, Fraction(0))
+                for column in zip(*leaves.weights(int(row[k])), strict=True)
+            ]
             near, far = (middle[(int(position[k]) + step) % 3] for step in (1, 2))
             exact[k] = (far / (near + far), -int(loose[k]))
         order[places] = sorted(exact, key=exact.__getitem__)

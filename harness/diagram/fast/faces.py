@@ -17,6 +17,7 @@ import numpy as np
 
 from harness.diagram.fast.arranged import ArrangedCorners
 from harness.diagram.fast.arrangement import Arrangement, arrange
+from harness.diagram.fast.insertion import inserted
 from harness.diagram.fast.lines import Lines, lines_of, points_on
 from harness.diagram.fast.plane import turns_left
 from harness.diagram.fast.prepare import Prepared
@@ -50,8 +51,15 @@ def arranged_roots(
         *_along_gaps(arrangement, far, middles),
     ]
     none = np.zeros((0, 3), dtype=np.int64)
-    rows = np.concatenate(triangles)
+    inside = [hub for hub in hubs if not _is_on_line(lines, hub)]
+    rows = inserted(corners, np.concatenate(triangles), inside, seed)
     return Roots(corners, rows, {}, none, np.full(len(rows), -1, dtype=np.int64))
+
+
+def _is_on_line(lines: Lines, point: RationalPoint) -> bool:
+    """Whether a point lies on some line."""
+    here = lines.in_integers(point)
+    return any(lines.contains(i, here) for i in range(len(lines.d)))
 
 
 class _Far:
@@ -146,9 +154,7 @@ def _middles(
     total = np.bincount(face[finite], weight[finite], minlength=faces)
     middles = np.empty((faces, 2))
     for axis in range(2):
-        summed = np.bincount(
-            face[finite], weight[finite] * at[finite, 2 * axis], minlength=faces
-        )
+        summed = np.bincount(face[finite], weight[finite] * at[finite, 2 * axis], minlength=faces)
         middles[:, axis] = summed / total
     for h in np.flatnonzero(arrangement.gap).tolist():
         for corner in far.chains[-1 - heads[h]]:

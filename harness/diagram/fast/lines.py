@@ -147,7 +147,9 @@ def _squares(
 def _reach(d: list[IntPoint], c: list[int], middle: IntPoint) -> float:
     """At least the distance of all crossings from a point, about."""
     x, y = (np.array([float(v[axis]) for v in d]) for axis in range(2))
-    offset = np.array([float(k - (v[0] * middle[1] - v[1] * middle[0])) for v, k in zip(d, c, strict=True)])
+    offset = np.array(
+        [float(k - (v[0] * middle[1] - v[1] * middle[0])) for v, k in zip(d, c, strict=True)]
+    )
     most = 0.0
     for i in range(len(d)):
         w = x[i] * y - y[i] * x
@@ -160,7 +162,9 @@ def _reach(d: list[IntPoint], c: list[int], middle: IntPoint) -> float:
             (ux, uy), (vx, vy) = d[i], d[j]
             exact = ux * vy - uy * vx
             if exact:
-                size = np.hypot(offset[i] * x[j] - offset[j] * x[i], offset[i] * y[j] - offset[j] * y[i])
+                size = np.hypot(
+                    offset[i] * x[j] - offset[j] * x[i], offset[i] * y[j] - offset[j] * y[i]
+                )
                 most = max(most, float(size / abs(exact)))
     return 1.1 * most
 

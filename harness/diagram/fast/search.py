@@ -72,7 +72,7 @@ def _settled(
     while True:
         first, rows = tie_arrays(ties, len(roots.corners.weights))
         world = (prepared.lines, prepared.lengths, prepared.classes, first, rows)
-        candidates = candidates_of(prepared, roots, found, spans, sense, definite, world)
+        candidates = candidates_of(prepared, roots, found, spans, sense, definite, world, workers)
         leaves = find_leaves(prepared, roots, candidates, definite, sense, workers, world)
         if leaves.statistics[5]:
             raise Hopeless("halving does not end")

@@ -24,13 +24,15 @@ def new_work(n):
             np.zeros(n, np.int64),
         ),
         np.full(3, -1),
+        np.empty(n, np.int64),
+        np.empty(n, np.int64),
     )
 
 
 @compiled
 def sift(ids, m, corners, weights, far, segments, size, sense, definite, world, w):
     """Keep in ``ids`` (m,) the candidates that no pivot beats all over a triangle; their number."""
-    tables, norms, work, spots = w
+    tables, norms, work, spots, _, _ = w
     for a in range(m):
         root_table(segments[ids[a]], corners, weights, 0, 0, size, sense, tables[a], norms[a, 0:2])
     kept, _ = prune(tables, norms, ids, 0, m, error_factor(0), far, definite, work, world, spots)
@@ -108,7 +110,7 @@ def sift_kernel(chain, m, n, segments, size, sense, world):
     used = 0
     w = new_work(n)
     ids = np.empty(n, np.int64)
-    ones = np.ones(3)
+    ones, weights = np.ones(3), np.ones(4)
     box, three = np.empty((4, 4)), np.empty((3, 4))
     # low, high, first and count of the candidates of the piece around it.
     stack = np.empty((4 * m + 16, 4), np.int64)
@@ -120,7 +122,7 @@ def sift_kernel(chain, m, n, segments, size, sense, world):
     kept = n
     for a in range(n):
         ids[a] = a
-    kept = sift_box(ids, kept, box, three, ones, segments, size, sense, True, world, w)
+    kept = sift_box(ids, kept, box, weights, three, ones, segments, size, sense, True, world, w)
     flat = grown(flat, used + kept)
     flat[used : used + kept] = ids[:kept]
     first, count = used, kept
@@ -137,7 +139,9 @@ def sift_kernel(chain, m, n, segments, size, sense, world):
         low, high, first, count = stack[top]
         _box(chain, 2 * low, 2 * high, size, box)
         ids[:count] = flat[first : first + count]
-        kept = sift_box(ids, count, box, three, ones, segments, size, sense, True, world, w)
+        kept = sift_box(
+            ids, count, box, weights, three, ones, segments, size, sense, True, world, w
+        )
         flat = grown(flat, used + kept)
         flat[used : used + kept] = ids[:kept]
         first, count = used, kept
@@ -156,19 +160,42 @@ def sift_kernel(chain, m, n, segments, size, sense, world):
 
 
 @compiled
-def sift_box(ids, m, box, three, ones, segments, size, sense, definite, world, w):
-    """Keep the candidates that may win in a rectangle: in one of its two triangles."""
+def sift_box(ids, m, box, weights, three, ones, segments, size, sense, definite, world, w):
+    """Keep the candidates that may win in a quadrilateral (4, 4), (4,): in one of its two halves."""
     if m <= 1:
         return m
-    both = np.empty(m, np.int64)
-    both[:] = ids[:m]
-    three[0], three[1], three[2] = box[0], box[1], box[2]
-    one = sift(ids, m, three, ones, 0, segments, size, sense, definite, world, w)
-    three[0], three[1], three[2] = box[0], box[2], box[3]
-    two = sift(both, m, three, ones, 0, segments, size, sense, definite, world, w)
-    merged = np.empty(one + two, np.int64)
-    merged[:one] = ids[:one]
-    merged[one:] = both[:two]
-    merged = np.unique(merged)
-    ids[: len(merged)] = merged
-    return len(merged)
+    before, both = w[4], w[5]
+    before[:m] = ids[:m]
+    both[:m] = ids[:m]
+    far = _half(box, weights, 1, three, ones)
+    one = sift(ids, m, three, ones, far, segments, size, sense, definite, world, w)
+    far = _half(box, weights, 2, three, ones)
+    two = sift(both, m, three, ones, far, segments, size, sense, definite, world, w)
+    if one == m or two == m:
+        ids[:m] = before[:m]
+        return m
+    # Both kept the order; those that one of them kept.
+    i = j = kept = 0
+    for k in range(m):
+        candidate, wanted = before[k], False
+        if i < one and ids[i] == candidate:
+            i, wanted = i + 1, True
+        if j < two and both[j] == candidate:
+            j, wanted = j + 1, True
+        if wanted:
+            before[kept] = candidate
+            kept += 1
+    ids[:kept] = before[:kept]
+    return kept
+
+
+@compiled
+def _half(box, weights, k, three, ones):
+    """Corners 0, k, k + 1 of a quadrilateral as a triangle; which of them are at infinity."""
+    three[0], three[1], three[2] = box[0], box[k], box[k + 1]
+    ones[0], ones[1], ones[2] = weights[0], weights[k], weights[k + 1]
+    far = 0
+    for corner in range(3):
+        if ones[corner] == 0.0:
+            far |= 1 << corner
+    return far
