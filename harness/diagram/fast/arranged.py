@@ -1,4 +1,4 @@
-"""Corners of the root triangles of an arrangement: very many, so in arrays, exact when asked for."""
+"""Corners of the root triangles of an arrangement: very many, so in arrays."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from fractions import Fraction
 from typing import Generic, TypeVar, overload
 
 import numpy as np
+from numpy.typing import NDArray
 
 from harness.diagram.fast.lines import Lines, Points
 from harness.diagram.fast.prepare import Prepared
@@ -80,7 +81,7 @@ class ArrangedCorners:
         self.frame = self._frame_of_points()
         self.weights: Floats = np.ones(len(points.pairs))
         self._first, self._flat = _incidences(lines, points)
-        self.special: np.ndarray = np.diff(self._first) > 0
+        self.special: NDArray[np.bool_] = np.diff(self._first) > 0
         self._exactly: dict[int, RationalPoint] = {}
 
     # -- adding -----------------------------------------------------------------------------------
@@ -94,7 +95,7 @@ class ArrangedCorners:
     ) -> int:
         """Add a corner; its number."""
         centre, scale = self.prepared.centre, self.prepared.scale
-        row = []
+        row: list[float] = []
         for axis in range(2):
             value = point[axis] - centre[axis] if weight else point[axis]
             row += double_double(value * scale)
@@ -152,16 +153,16 @@ class ArrangedCorners:
         if i < 0:
             x, y = self._others[j]
             return centre[0] + x / self.lines.unit, centre[1] + y / self.lines.unit
-        x, y, w = self.lines.crossing(i, j)
+        over_x, over_y, w = self.lines.crossing(i, j)
         w *= self.lines.unit
-        return centre[0] + Fraction(x, w), centre[1] + Fraction(y, w)
+        return centre[0] + Fraction(over_x, w), centre[1] + Fraction(over_y, w)
 
     def arrays(self, centre: RationalPoint, scale: Fraction) -> tuple[Floats, Floats, Ints, Ints]:
         """As of :class:`harness.diagram.fast.roots.Corners`, with that centre and scale."""
         assert (centre, scale) == (self.prepared.centre, self.prepared.scale)
         return self.frame, self.weights, self._first, self._flat
 
-    def have_ends(self) -> np.ndarray:
+    def have_ends(self) -> NDArray[np.bool_]:
         """Whether each corner is the endpoint of a segment, (c,)."""
         found = np.zeros(len(self.weights), dtype=bool)
         found[np.repeat(np.arange(len(found)), np.diff(self._first))[self._flat & 1 == 1]] = True

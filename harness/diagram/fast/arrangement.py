@@ -11,6 +11,7 @@ last of them to the next direction, across a *gap*.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -79,8 +80,8 @@ def arrange(lines: Lines, points: Points) -> Arrangement:
 def _turn_at_points(lines: Lines, points: Points, arriving: Ints, after: Ints) -> None:
     """What follows every half-edge that ends at a finite point.
 
-    The lines through a point by angle are l₀ … l_k; after arriving along l_r > 0 one goes back along
-    l_{r−1}, and along l₀ on along l_k; with all signs changed if one came backwards.
+    The lines through a point by angle are l₀ … l_k; after arriving along l_r, r > 0, one goes back
+    along l_{r−1}, and after l₀ on along l_k; with all signs changed if one came backwards.
     """
     rank = lines.rank[points.line]
     order = np.lexsort((rank, points.vertex))
@@ -112,7 +113,7 @@ def _turn_at_infinity(
         row.sort(key=lines.c.__getitem__)
     count = len(by_direction)
     for k, row in enumerate(by_direction):
-        for right, left in zip(row, row[1:], strict=False):
+        for right, left in pairwise(row):
             after[2 * last_piece[right]] = 2 * last_piece[left] + 1
             after[2 * first_piece[left] + 1] = 2 * first_piece[right]
         leftmost, rightmost = row[-1], row[0]

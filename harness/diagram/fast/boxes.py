@@ -1,8 +1,9 @@
 """Candidates of very many root triangles, by a hierarchy of boxes about neighbouring ones.
 
 Far from everything triangles are long and point outwards, so boxes are made in *charts*: the plane
-itself, and, where |x| ≤ 4|y| and |y| is large, the projective coordinates x/y and 1/y, likewise with
-x and y exchanged.  There a box is a quadrilateral of the plane, perhaps with corners at infinity.
+itself, and, where |x| ≤ 4|y| and |y| is large, the projective coordinates x/y and 1/y, likewise
+with x and y exchanged.  There a box is a quadrilateral of the plane, perhaps with corners at
+infinity.
 
 In each chart a box about some triangles is divided across the axis along which it holds most of
 them, so that both halves have the same number; their candidates are sifted from its own.

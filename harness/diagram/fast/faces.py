@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
+from functools import cmp_to_key
 from itertools import pairwise
 
 import numpy as np
@@ -63,11 +64,19 @@ def _is_on_line(lines: Lines, point: RationalPoint) -> bool:
 
 
 class _Far:
-    """Corners at infinity: ``of_line`` (2r,): of the lines' directions; ``chains``: the corners from
-    each of these to the next, both included."""
+    """Corners at infinity.
+
+    ``of_line`` (2r,): of the lines' directions; ``chains``: the corners from each of these to the
+    next, both included.
+    """
 
     def __init__(self, of_line: Ints, chains: list[list[int]]) -> None:
         self.of_line, self.chains = of_line, chains
+
+    def met(self, arrangement: Arrangement, half: int) -> list[int]:
+        """The corners at infinity of a face to which a half-edge leads."""
+        direction = -1 - int(arrangement.heads[half])
+        return self.chains[direction] if arrangement.gap[half] else [int(self.of_line[direction])]
 
 
 def _directions(
@@ -80,9 +89,9 @@ def _directions(
     vectors: list[RationalPoint] = [(Fraction(0), Fraction(0))] * (2 * count)
     rows: list[list[int]] = [[] for _ in range(2 * count)]
     for i, k in enumerate(lines.rank.tolist()):
-        x, y = lines.d[i]
-        size = max(abs(x), abs(y))
-        vectors[k] = reach * Fraction(x, size), reach * Fraction(y, size)
+        size = max(map(abs, lines.d[i]))
+        dx, dy = (reach * Fraction(part, size) for part in lines.d[i])
+        vectors[k] = dx, dy
         vectors[k + count] = -vectors[k][0], -vectors[k][1]
         rows[k] += [2 * segment for segment in lines.segments[i]]
     numbers = [
@@ -111,35 +120,28 @@ def _chain(
     """The corners at infinity from the first to the last station, less than half a turn apart each:
     the directions of ``more`` between them, and free ones."""
     found = [stations[0]]
-    for one, two in pairwise(stations):
-        inside = [d for d in more if turns_left(one[0], d) and turns_left(d, two[0])]
-        while inside:
-            least = inside[0]
-            for d in inside[1:]:
-                if turns_left(d, least):
-                    least = d
-            inside.remove(least)
-            long = corners.exact_corner(stations[0][1])
-            scale = max(abs(long[0]), abs(long[1]))
-            least = (least[0] * scale, least[1] * scale)
-            found.append((least, corners.add(least, weight=0.0, special=True)))
-        found.append(two)
-    chain = [found[0][1]]
+    scale = max(map(abs, stations[0][0]))
+    for start, stop in pairwise(stations):
+        inside = [d for d in more if turns_left(start[0], d) and turns_left(d, stop[0])]
+        for x, y in sorted(inside, key=cmp_to_key(_by_turn)):
+            long = (x * scale, y * scale)
+            found.append((long, corners.add(long, weight=0.0, special=True)))
+        found.append(stop)
+    corners_of = [found[0][1]]
     for (d, one), (e, two) in pairwise(found):
         if corners.special[one] and corners.special[two]:
-            t = free_number(5 + len(chain), seed)
+            t = free_number(5 + len(corners_of), seed)
             free = between(d, e, t)
             if not (turns_left(d, free) and turns_left(free, e)):
                 raise Contradiction("no room for a free direction")
-            chain.append(corners.add(free, weight=0.0))
-        chain.append(two)
-    return chain
+            corners_of.append(corners.add(free, weight=0.0))
+        corners_of.append(two)
+    return corners_of
 
 
-def _unit(d: RationalPoint) -> RationalPoint:
-    """About the unit vector of a direction, in the same direction exactly."""
-    size = Fraction(float(np.hypot(float(d[0]), float(d[1]))))
-    return d[0] / size, d[1] / size
+def _by_turn(d: RationalPoint, e: RationalPoint) -> int:
+    """Order of directions within less than half a turn, counter-clockwise."""
+    return -1 if turns_left(d, e) else 1
 
 
 def _middles(
@@ -156,14 +158,12 @@ def _middles(
     for axis in range(2):
         summed = np.bincount(face[finite], weight[finite] * at[finite, 2 * axis], minlength=faces)
         middles[:, axis] = summed / total
-    for h in np.flatnonzero(arrangement.gap).tolist():
-        for corner in far.chains[-1 - heads[h]]:
-            if not corners.special[corner]:
-                x, y = corners.frame[corner, 0::2]
-                middles[face[h]] += np.array([x, y]) / np.hypot(x, y)
+    for h in np.flatnonzero(heads < 0).tolist():
+        chain = far.met(arrangement, h)
+        middles[face[h]] += _shares(chain, seed) @ corners.frame[chain, 0::2]
     first = corners.add_free(middles)
     for f in np.flatnonzero(~_surely_inside(corners, lines, arrangement, middles)).tolist():
-        corners.replace(first + f, _exact_middle(corners, arrangement, far, f, weight))
+        corners.replace(first + f, _exact_middle(corners, arrangement, far, f, weight, seed))
     return first + np.arange(faces)
 
 
@@ -185,7 +185,12 @@ def _surely_inside(
 
 
 def _exact_middle(
-    corners: ArrangedCorners, arrangement: Arrangement, far: _Far, face: int, weight: Floats
+    corners: ArrangedCorners,
+    arrangement: Arrangement,
+    far: _Far,
+    face: int,
+    weight: Floats,
+    seed: int,
 ) -> RationalPoint:
     """A point inside a face, as a rational combination of its corners."""
     halves = arrangement.cycle[arrangement.first[face] : arrangement.first[face + 1]].tolist()
@@ -198,12 +203,17 @@ def _exact_middle(
             x, y, total = x + w * px, y + w * py, total + w
     x, y = x / total, y / total
     for h in halves:
-        if arrangement.gap[h]:
-            for corner in far.chains[-1 - arrangement.heads[h]]:
-                if not corners.special[corner]:
-                    dx, dy = _unit(corners.exact_corner(corner))
-                    x, y = x + dx / corners.prepared.scale, y + dy / corners.prepared.scale
+        if arrangement.heads[h] < 0:
+            chain = far.met(arrangement, h)
+            for corner, share in zip(chain, _shares(chain, seed).tolist(), strict=True):
+                dx, dy = corners.exact_corner(corner)
+                x, y = x + Fraction(share) * dx, y + Fraction(share) * dy
     return x, y
+
+
+def _shares(chain: Sequence[int], seed: int) -> Floats:
+    """Weights of corners at infinity in a free point."""
+    return np.array([float(free_number(k + 9, seed)) / len(chain) for k in range(len(chain))])
 
 
 def _ends(arrangement: Arrangement, far: _Far) -> tuple[Ints, Ints]:

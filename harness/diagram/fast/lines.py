@@ -14,6 +14,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import pairwise
 from math import gcd, lcm
 
 import numpy as np
@@ -82,7 +83,7 @@ def lines_of(prepared: Prepared, seed: int = 0) -> Lines:
         *(x.denominator for segment in exact for point in segment for x in point),
         *(x.denominator for x in centre),
     )
-    ends = [tuple(_integer_point(point, centre, unit) for point in segment) for segment in exact]
+    ends = [(_integer_point(a, centre, unit), _integer_point(b, centre, unit)) for a, b in exact]
     groups: dict[int, list[int]] = {}
     for k, number in enumerate(prepared.lines.tolist()):
         groups.setdefault(number if number >= 0 else -1 - k, []).append(k)
@@ -110,7 +111,7 @@ def lines_of(prepared: Prepared, seed: int = 0) -> Lines:
         c=c,
         p=p,
         rank=np.array([number_of[v] for v in d], dtype=np.int64),
-        ends=[(a, b) for a, b in ends],
+        ends=ends,
         centre=centre,
         unit=unit,
     )
@@ -305,7 +306,7 @@ def _in_order(
             }
             members.sort(key=values.__getitem__)
             order[start:stop] = members
-            for one, two in zip(members, members[1:], strict=False):
+            for one, two in pairwise(members):
                 if values[one] == values[two]:
                     classes.unite(int(ids[one]), int(ids[two]))
     found: Ints = ids[order]

@@ -53,8 +53,8 @@ def find_nodes(
     met = corner_nodes(roots, leaves, arrays)
     finite = np.array(roots.corners.weights)[met.corners] != 0
     passing = finite & (met.degrees == 2) & _are_hubs(roots, met.corners)
-    for node in met.only(passing):
-        one, two = node.ports  # an edge that passes through, without a node
+    for through in met.only(passing):
+        one, two = through.ports  # an edge that passes through, without a node
         arrays.mate[one], arrays.mate[two] = two, one
     corners, far = met.only(finite & ~passing), met.only(~finite)
     of_port = np.full(len(arrays.place), -1, dtype=np.int64)
@@ -104,7 +104,7 @@ def _are_plain_crossings(
     """
     frame, _, first, flat = roots.corners.arrays(prepared.centre, prepared.scale)
     number, count = corners.corners, np.diff(first)[corners.corners]
-    plain = (corners.degrees == 4) & (count == 2)
+    plain: np.ndarray = (corners.degrees == 4) & (count == 2)
     rows = np.flatnonzero(plain)
     lines = flat[first[number[rows]][:, None] + np.arange(2)]
     ports = corners.ports[corners.first[rows][:, None] + np.arange(4)]

@@ -22,6 +22,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +40,44 @@ def double_double(value: Fraction) -> tuple[float, float]:
     """The two doubles whose sum is nearest to a rational, up to 2⁻¹⁰⁶ of it."""
     high = float(value)
     return high, float(value - Fraction(high))
+
+
+class CornerTable(Protocol):
+    """What both kinds of corners have; see :class:`Corners` for the meaning."""
+
+    @property
+    def exact(self) -> Sequence[RationalPoint]:
+        """Coordinates; directions of corners at infinity."""
+
+    @property
+    def weights(self) -> Any:
+        """1, or 0 at infinity, (c,)."""
+
+    @property
+    def incident(self) -> Sequence[list[int]]:
+        """The forms that vanish at each corner."""
+
+    @property
+    def special(self) -> Any:
+        """Whether something is known to happen at each, (c,)."""
+
+    def add(
+        self,
+        point: RationalPoint,
+        incident: Sequence[int] = (),
+        weight: float = 1.0,
+        special: bool = False,
+    ) -> int:
+        """Add a corner; its number."""
+
+    def arrays(self, centre: RationalPoint, scale: Fraction) -> tuple[Floats, Floats, Ints, Ints]:
+        """Coordinates, weights, incident segments (CSR)."""
+
+    def have_ends(self) -> NDArray[np.bool_]:
+        """Whether each is an endpoint."""
+
+    def points(self) -> Floats:
+        """Coordinates as doubles."""
 
 
 @dataclass
@@ -76,7 +115,7 @@ class Corners:
         flat = [z for row in self.incident for z in row]
         return coordinates, np.array(self.weights), first, np.array(flat, dtype=np.int64)
 
-    def have_ends(self) -> np.ndarray:
+    def have_ends(self) -> NDArray[np.bool_]:
         """Whether each corner is the endpoint of a segment, (c,)."""
         return np.array([any(z & 1 for z in row) for row in self.incident], dtype=bool)
 
@@ -94,7 +133,7 @@ class Roots:
     candidates are sifted first; ``region_of`` (r,): that of each root, or −1.
     """
 
-    corners: Corners
+    corners: CornerTable
     triangles: Ints
     walls: dict[tuple[int, int], int]
     regions: Ints

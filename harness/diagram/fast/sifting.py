@@ -161,7 +161,7 @@ def sift_kernel(chain, m, n, segments, size, sense, world):
 
 @compiled
 def sift_box(ids, m, box, weights, three, ones, segments, size, sense, definite, world, w):
-    """Keep the candidates that may win in a quadrilateral (4, 4), (4,): in one of its two halves."""
+    """Keep the candidates that may win in one of the halves of a quadrilateral (4, 4), (4,)."""
     if m <= 1:
         return m
     before, both = w[4], w[5]
