@@ -70,19 +70,21 @@ class _Exact(_Computed[RationalPoint]):
 class ArrangedCorners:
     """Corners as in :class:`harness.diagram.fast.roots.Corners`: the points on the lines, numbered
     as there, and after them points, at infinity or not, that are added.
-
-    ``frame`` (c, 4): coordinates about the instance's centre times its scale, as double-doubles.
     """
 
     def __init__(self, prepared: Prepared, lines: Lines, points: Points) -> None:
         """Raises nothing; O(points)."""
         self.prepared, self.lines, self.pairs = prepared, lines, points.pairs
         self._others = points.others
-        self.frame = self._frame_of_points()
-        self.weights: Floats = np.ones(len(points.pairs))
-        self._first, self._flat = _incidences(lines, points)
-        self.special: NDArray[np.bool_] = np.diff(self._first) > 0
+        first, flat = _incidences(lines, points)
+        self._frame: Floats = _frame_of_points(prepared, lines, points)
+        self._weights: Floats = np.ones(len(points.pairs))
+        self._special: NDArray[np.bool_] = np.diff(first) > 0
+        self._first, self._flat = first, flat
         self._exactly: dict[int, RationalPoint] = {}
+        #: What was added since: rows of the frame, weights, special or not, incident segments.
+        self._waiting: list[tuple[Floats, float, bool, Sequence[int]]] = []
+        self._count = len(points.pairs)
 
     # -- adding -----------------------------------------------------------------------------------
 
@@ -112,21 +114,53 @@ class ArrangedCorners:
 
     def replace(self, number: int, point: RationalPoint) -> None:
         """Move a free point."""
+        self._settle()
         self._exactly[number] = point
         for axis in range(2):
             value = (point[axis] - self.prepared.centre[axis]) * self.prepared.scale
-            self.frame[number, 2 * axis : 2 * axis + 2] = double_double(value)
+            self._frame[number, 2 * axis : 2 * axis + 2] = double_double(value)
 
     def _extend(
         self, rows: Floats, weight: float, special: bool, incident: Sequence[int] = ()
     ) -> int:
-        number, count = len(self.weights), len(rows)
-        self.frame = np.concatenate([self.frame, rows])
-        self.weights = np.concatenate([self.weights, np.full(count, weight)])
-        self.special = np.concatenate([self.special, np.full(count, special)])
-        self._flat = np.concatenate([self._flat, np.array(incident, dtype=np.int64)])
-        self._first = np.concatenate([self._first, np.full(count, len(self._flat))])
+        number = self._count
+        self._count += len(rows)
+        self._waiting.append((rows, weight, special, incident))
         return number
+
+    def _settle(self) -> None:
+        """Put what was added into the arrays."""
+        if not self._waiting:
+            return
+        waiting, self._waiting = self._waiting, []
+        counts = [len(rows) for rows, _, _, _ in waiting]
+        self._frame = np.concatenate([self._frame, *(rows for rows, _, _, _ in waiting)])
+        weights = np.repeat([weight for _, weight, _, _ in waiting], counts)
+        special = np.repeat([special for _, _, special, _ in waiting], counts)
+        self._weights = np.concatenate([self._weights, weights])
+        self._special = np.concatenate([self._special, special])
+        flat = [np.array(incident, dtype=np.int64) for _, _, _, incident in waiting]
+        ends = len(self._flat) + np.cumsum([len(row) for row in flat])
+        self._flat = np.concatenate([self._flat, *flat])
+        self._first = np.concatenate([self._first, np.repeat(ends, counts)])
+
+    @property
+    def frame(self) -> Floats:
+        """Coordinates (c, 4) about the centre times the scale, as double-doubles."""
+        self._settle()
+        return self._frame
+
+    @property
+    def weights(self) -> Floats:
+        """1, or 0 at infinity, (c,)."""
+        self._settle()
+        return self._weights
+
+    @property
+    def special(self) -> NDArray[np.bool_]:
+        """Whether something is known to happen at each, (c,)."""
+        self._settle()
+        return self._special
 
     # -- reading ----------------------------------------------------------------------------------
 
@@ -138,6 +172,7 @@ class ArrangedCorners:
     @property
     def incident(self) -> Sequence[list[int]]:
         """The incident segments of each corner: 2·segment, + 1 if it is an endpoint."""
+        self._settle()
         return _Rows(self._first, self._flat)
 
     def exact_corner(self, index: int) -> RationalPoint:
@@ -160,11 +195,13 @@ class ArrangedCorners:
     def arrays(self, centre: RationalPoint, scale: Fraction) -> tuple[Floats, Floats, Ints, Ints]:
         """As of :class:`harness.diagram.fast.roots.Corners`, with that centre and scale."""
         assert (centre, scale) == (self.prepared.centre, self.prepared.scale)
-        return self.frame, self.weights, self._first, self._flat
+        self._settle()
+        return self._frame, self._weights, self._first, self._flat
 
     def have_ends(self) -> NDArray[np.bool_]:
         """Whether each corner is the endpoint of a segment, (c,)."""
-        found = np.zeros(len(self.weights), dtype=bool)
+        self._settle()
+        found = np.zeros(self._count, dtype=bool)
         found[np.repeat(np.arange(len(found)), np.diff(self._first))[self._flat & 1 == 1]] = True
         return found
 
@@ -175,24 +212,24 @@ class ArrangedCorners:
         rounded += about * self.weights[:, None]
         return rounded
 
-    def _frame_of_points(self) -> Floats:
-        """Coordinates of the points on lines in the frame, each with an error of 2⁻¹⁰⁵ of it."""
-        lines, scale = self.lines, self.prepared.scale
-        up, down = scale.numerator, scale.denominator * lines.unit
-        frame = np.empty((len(self.pairs), 4))
-        crossing = lines.crossing
-        for k, (i, j) in enumerate(self.pairs.tolist()):
-            if i >= 0:
-                x, y, w = crossing(i, j)
-                if w < 0:
-                    x, y, w = -x, -y, -w
-            else:
-                other = self._others[j]
-                w = other[0].denominator * other[1].denominator
-                x, y = int(other[0] * w), int(other[1] * w)
-            w *= down
-            frame[k] = *_quotient(x * up, w), *_quotient(y * up, w)
-        return frame
+
+def _frame_of_points(prepared: Prepared, lines: Lines, points: Points) -> Floats:
+    """Coordinates of the points on lines in the frame, each with an error of 2⁻¹⁰⁵ of it."""
+    up, down = prepared.scale.numerator, prepared.scale.denominator * lines.unit
+    crossing = lines.crossing
+    rows = []
+    for i, j in points.pairs.tolist():
+        if i >= 0:
+            x, y, w = crossing(i, j)
+            if w < 0:
+                x, y, w = -x, -y, -w
+        else:
+            other = points.others[j]
+            w = other[0].denominator * other[1].denominator
+            x, y = int(other[0] * w), int(other[1] * w)
+        w *= down
+        rows.append((*_quotient(x * up, w), *_quotient(y * up, w)))
+    return np.array(rows)
 
 
 def _quotient(x: int, w: int) -> tuple[float, float]:

@@ -87,7 +87,7 @@ def _directions(
     # As long as everything is large: halfway from a point to infinity is as far out again.
     reach = Fraction(float(np.abs(corners.frame).max())) / corners.prepared.scale
     vectors: list[RationalPoint] = [(Fraction(0), Fraction(0))] * (2 * count)
-    rows: list[list[int]] = [[] for _ in range(2 * count)]
+    rows: list[list[int]] = [[] for _ in range(count)]
     for i, k in enumerate(lines.rank.tolist()):
         size = max(map(abs, lines.d[i]))
         dx, dy = (reach * Fraction(part, size) for part in lines.d[i])
@@ -98,45 +98,38 @@ def _directions(
         corners.add(vector, sorted(rows[k % count]), weight=0.0, special=bool(rows[k % count]))
         for k, vector in enumerate(vectors)
     ]
-    chains = []
-    for k, start in enumerate(numbers):
-        stop = (k + 1) % (2 * count)
-        stations = [(vectors[k], start), (vectors[stop], numbers[stop])]
-        if count == 1:
-            x, y = vectors[k]
-            t = free_number(3, seed)
-            half = (t * x - y, t * y + x)
-            stations.insert(1, (half, corners.add(half, weight=0.0)))
-        chains.append(_chain(corners, stations, more, seed))
+    stations = list(zip(vectors, numbers, [bool(row) for row in rows] * 2, strict=True))
+    chains = [
+        _chain(corners, station, stations[(k + 1) % len(stations)], more, seed)
+        for k, station in enumerate(stations)
+    ]
     return _Far(np.array(numbers), chains)
 
 
+#: A corner at infinity: its direction, its number, and whether it is special.
+Station = tuple[RationalPoint, int, bool]
+
+
 def _chain(
-    corners: ArrangedCorners,
-    stations: list[tuple[RationalPoint, int]],
-    more: list[RationalPoint],
-    seed: int,
+    corners: ArrangedCorners, start: Station, stop: Station, more: list[RationalPoint], seed: int
 ) -> list[int]:
-    """The corners at infinity from the first to the last station, less than half a turn apart each:
-    the directions of ``more`` between them, and free ones."""
-    found = [stations[0]]
-    scale = max(map(abs, stations[0][0]))
-    for start, stop in pairwise(stations):
-        inside = [d for d in more if turns_left(start[0], d) and turns_left(d, stop[0])]
-        for x, y in sorted(inside, key=cmp_to_key(_by_turn)):
-            long = (x * scale, y * scale)
-            found.append((long, corners.add(long, weight=0.0, special=True)))
-        found.append(stop)
-    corners_of = [found[0][1]]
-    for (d, one), (e, two) in pairwise(found):
-        if corners.special[one] and corners.special[two]:
-            t = free_number(5 + len(corners_of), seed)
-            free = between(d, e, t)
+    """The corners at infinity from one station to the next, less than half a turn further: the
+    directions of ``more`` between them, and free ones between special ones."""
+    scale = max(map(abs, start[0]))
+    inside = [d for d in more if turns_left(start[0], d) and turns_left(d, stop[0])]
+    found = [start]
+    for x, y in sorted(inside, key=cmp_to_key(_by_turn)):
+        long = (x * scale, y * scale)
+        found.append((long, corners.add(long, weight=0.0, special=True), True))
+    chain = [start[1]]
+    for (d, _, one), (e, number, two) in pairwise([*found, stop]):
+        if one and two:
+            free = between(d, e, free_number(5 + len(chain), seed))
             if not (turns_left(d, free) and turns_left(free, e)):
                 raise Contradiction("no room for a free direction")
-            corners_of.append(corners.add(free, weight=0.0))
-        corners_of.append(two)
-    return corners_of
+            chain.append(corners.add(free, weight=0.0))
+        chain.append(number)
+    return chain
 
 
 def _by_turn(d: RationalPoint, e: RationalPoint) -> int:

@@ -153,19 +153,19 @@ class Roots:
         r = len(self.triangles)
         start = self.triangles[:, [1, 2, 0]].ravel().astype(np.int64)
         end = self.triangles[:, [2, 0, 1]].ravel().astype(np.int64)
-        size = len(self.corners.weights)
-        keys, back = start * size + end, end * size + start
+        keys = np.minimum(start, end) * len(self.corners.weights) + np.maximum(start, end)
         order = np.argsort(keys)
-        if (np.diff(keys[order]) == 0).any():
+        same = np.diff(keys[order]) == 0
+        one, other = order[:-1][same], order[1:][same]
+        if (same[1:] & same[:-1]).any() or (start[one] == start[other]).any():
             raise Contradiction("two root triangles overlap")
-        place = np.searchsorted(keys, back, sorter=order)
-        found = order[np.minimum(place, 3 * r - 1)]
-        matched = keys[found] == back
-        result = np.where(matched, found, WALL)
+        result = np.full(3 * r, WALL, dtype=np.int64)
+        result[one], result[other] = other, one
         weights = np.array(self.corners.weights)
-        far = (weights[start] == 0) & (weights[end] == 0)
+        alone = result == WALL
+        far = alone & (weights[start] == 0) & (weights[end] == 0)
         result[far] = INFINITY
-        for k in np.flatnonzero(~matched & ~far):
+        for k in np.flatnonzero(alone & ~far):
             if (int(start[k]), int(end[k])) not in self.walls:
                 raise Contradiction("a side of a root triangle has no neighbour")
         return result.reshape(r, 3)
