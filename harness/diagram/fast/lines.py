@@ -32,7 +32,8 @@ class Lines:
     """``segments``: those on each line.  ``d``, ``c``: see above.  ``p``: a point on each line.
 
     ``rank`` (l,): of the line's direction among all, by angle.  ``ends``: of every segment, in
-    integers: a coordinate of the instance less ``centre``, times ``unit``.
+    integers: a coordinate of the instance less ``centre``, times ``unit``.  ``orientation``: of a
+    polygon, as it was given.
     """
 
     segments: list[list[int]]
@@ -43,6 +44,7 @@ class Lines:
     ends: list[tuple[IntPoint, IntPoint]]
     centre: RationalPoint
     unit: int
+    orientation: int
 
     def crossing(self, i: int, j: int) -> tuple[int, int, int]:
         """(X, Y, W): the lines i and j meet in (X/W, Y/W); W = 0 if they are parallel."""
@@ -71,8 +73,8 @@ class Lines:
         return ux * y - uy * x == self.c[i]
 
 
-def lines_of(prepared: Prepared, seed: int = 0) -> Lines:
-    """The lines of an instance, and *free* lines about it, which hold no segment.
+def lines_of(prepared: Prepared, seed: int = 0, squares: bool = True) -> Lines:
+    """The lines of an instance, and with ``squares`` *free* lines about it, which hold no segment.
 
     The free lines form squares, each four times as large as the one before, until all crossings lie
     inside: so no face reaches from small distances to very large ones.  O(n²).
@@ -97,7 +99,7 @@ def lines_of(prepared: Prepared, seed: int = 0) -> Lines:
         d.append((x, y))
         c.append(x * ay - y * ax)
         p.append((ax, ay))
-    for vector, offset in _squares(d, c, ends, seed):
+    for vector, offset in _squares(d, c, ends, seed) if squares else ():
         d.append(vector)
         c.append(offset)
         p.append(_point_on(vector, offset))
@@ -114,6 +116,7 @@ def lines_of(prepared: Prepared, seed: int = 0) -> Lines:
         ends=ends,
         centre=centre,
         unit=unit,
+        orientation=instance.orientation,
     )
 
 
@@ -221,9 +224,12 @@ class _Classes:
             self.parent[max(x, y)] = min(x, y)
 
 
-def points_on(lines: Lines, more: Iterable[RationalPoint] = ()) -> Points:
+def points_on(
+    lines: Lines, more: Iterable[RationalPoint] = (), within: Floats | None = None
+) -> Points:
     """The points on all lines in their order, and those of ``more`` that lie on lines.
 
+    ``within`` (l, 2): from which t on and up to which crossings are wanted on each line.
     O(l² log l) for l lines, if few points coincide nearly.
     """
     count = len(lines.d)
@@ -248,6 +254,9 @@ def points_on(lines: Lines, more: Iterable[RationalPoint] = ()) -> Points:
             t = above / below
             error = 1.01 * (above_error + np.abs(t) * below_error) / (np.abs(below) - below_error)
             error = np.where(np.abs(below) > 2 * below_error, error + 4 * U * np.abs(t), np.inf)
+        if within is not None:
+            wanted = ~((t + error < within[i, 0]) | (t - error > within[i, 1]))
+            j, t, error = j[wanted], t[wanted], error[wanted]
         exact = [lines.parameter_of_point(i, others[k]) for k in on_line[i]]
         near = np.array([float(x) for x in exact])
         t = np.concatenate([np.where(np.isfinite(t), t, 0.0), near])
@@ -352,3 +361,28 @@ def _joined(
         others=others,
         ends=np.searchsorted(numbers, np.array(ends)),
     )
+
+
+def within_hull(lines: Lines) -> Floats:
+    """Between which t every line is near the convex hull of all segments, (l, 2).
+
+    A little is added, far more than roundings.
+    """
+    from scipy.spatial import ConvexHull
+
+    ends = np.array([[float(x) for x in point] for segment in lines.ends for point in segment])
+    middle, size = ends.mean(axis=0), np.ptp(ends, axis=0).max()
+    normals = ConvexHull((ends - middle) / size).equations
+    d = np.array([[float(x) for x in v] for v in lines.d]) / size
+    p = (np.array([[float(x) for x in v] for v in lines.p]) - middle) / size
+    within = np.tile([-np.inf, np.inf], (len(d), 1))
+    for x, y, offset in normals:
+        speed = d[:, 0] * x + d[:, 1] * y
+        left = 1e-6 - (p[:, 0] * x + p[:, 1] * y + offset)  # what t·speed may be
+        with np.errstate(all="ignore"):
+            t = left / speed
+        within[:, 1] = np.where(speed > 0, np.minimum(within[:, 1], t), within[:, 1])
+        within[:, 0] = np.where(speed < 0, np.maximum(within[:, 0], t), within[:, 0])
+    slack = 1e-6 / np.hypot(d[:, 0], d[:, 1])
+    within += np.column_stack([-slack, slack])
+    return within

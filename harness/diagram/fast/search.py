@@ -5,7 +5,7 @@ from __future__ import annotations
 from harness.diagram.counts import Domain, Objective
 from harness.diagram.fast import domains
 from harness.diagram.fast.build import Leaves, candidates_of, find_leaves
-from harness.diagram.fast.faces import arranged_roots
+from harness.diagram.fast.faces import arranged_interior, arranged_roots
 from harness.diagram.fast.hubs import Hubs, find_hubs
 from harness.diagram.fast.plane import plane_roots
 from harness.diagram.fast.prepare import Prepared
@@ -14,6 +14,8 @@ from harness.diagram.fast.ties import Ties, tie_arrays, ties_at_corners, ties_at
 from harness.diagram.work import Contradiction, Hopeless
 from harness.geometry.kernel import Kernel
 
+#: The interiors of larger polygons are not cut by all lines.
+MOST_ARRANGED = 8192
 #: Rounds of new hubs, at most.
 ROUNDS = 12
 
@@ -53,6 +55,8 @@ def _roots(
     assert found is not None
     if domain == "kernel":
         return domains.kernel_roots(prepared.instance, found, seed, points)
+    if sense > 0 and prepared.instance.n <= MOST_ARRANGED:
+        return arranged_interior(prepared, seed, points), []
     return domains.interior_roots(prepared.instance, found, seed, points), []
 
 
