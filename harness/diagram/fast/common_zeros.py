@@ -63,7 +63,7 @@ def _by_halving(f: Floats, g: Floats) -> tuple[float, float, float] | None:
 def _may_vanish(cubic: Floats, corners: Floats) -> bool:
     """Whether the coefficients of a cubic over a part of the triangle have both signs."""
     values = [polar(cubic, *(corners[k] for k in index)) for index in _INDICES]
-    return min(values) <= 0.0 <= max(values)
+    return bool(min(values) <= 0.0 <= max(values))
 
 
 def _newton(f: Floats, g: Floats, start: Sequence[float]) -> tuple[float, float, float] | None:

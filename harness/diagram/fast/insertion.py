@@ -27,14 +27,16 @@ def inserted(
     """
     rows = triangles
     for number, point in enumerate(points):
-        t, exact = _containing(corners, rows, point)
+        t, exact, shares = _containing(corners, rows, point)
         p = (*point, Fraction(1))
         middle = corners.add(point, special=True)
         outer = rows[t].tolist()
         inner = []
         for k in range(3):
             share = free_number(3 * number + k, seed) / 8
-            turn = free_number(3 * number + k, seed + 1) / 8
+            # Small against what the next corner contributes to p: so p stays inside.
+            turn = min(Fraction(1), shares[(k + 1) % 3] / shares[k])
+            turn *= free_number(3 * number + k, seed + 1) / 8
             parts = zip(p, exact[k], exact[(k + 1) % 3], strict=True)
             x, y, w = (a + share * (b + turn * c) for a, b, c in parts)
             inner.append(corners.add((x / w, y / w)))
@@ -48,9 +50,9 @@ def inserted(
 
 def _containing(
     corners: ArrangedCorners, triangles: Ints, point: RationalPoint
-) -> tuple[int, list[Homogeneous]]:
-    """The triangle that contains a point, and its corners; the small coordinates of points at
-    infinity are scaled to be comparable to the others."""
+) -> tuple[int, list[Homogeneous], list[Fraction]]:
+    """The triangle that contains a point, its corners, and barycentric coordinates of the point
+    up to a factor."""
     centre, scale = corners.prepared.centre, corners.prepared.scale
     p = np.array([float((x - c) * scale) for x, c in zip(point, centre, strict=True)])
     areas = _areas(corners, triangles, p)
@@ -61,7 +63,7 @@ def _containing(
         here = (*point, Fraction(1))
         signs = [_determinant(here, exact[(k + 1) % 3], exact[(k + 2) % 3]) for k in range(3)]
         if min(signs) > 0:
-            return t, exact
+            return t, exact, signs
         if min(signs) == 0:
             raise Contradiction("a special point on a side of a triangle")
     raise Contradiction("a special point in no triangle")
