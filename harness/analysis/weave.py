@@ -46,10 +46,10 @@ into none, at the price of one cell, and at each of the m corners where j = 1 ar
 the corner into one triple point, if the two edges there own sectors of it (their exterior angle
 is less than the level there):
 
-    vertices = n − 2 + nF + m·[corner],        cells = n + mS + nU,        edges = cells + vertices − 1.
+    vertices = n − 2 + nF + m·[corner],    cells = n + mS + nU,    edges = cells + vertices − 1.
 
 If ν ≥ 3φ/2, S = F = m − 2k and the vertices are n(m − 2k + 1) − 2: about (n²/2)(1 − 2ν/π).  Every
-convex weave has n²/2 − n − 2 of them, and n/2 more beyond δ ≈ 3/5 (see ``weave.md``).
+convex weave has n²/2 − n − 2 of them, and n/2 more beyond δ ≈ 3/5.
 """
 
 from __future__ import annotations

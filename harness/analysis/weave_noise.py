@@ -1,21 +1,22 @@
 """How much noise a weave bears before the counts of ``weave`` change: a first-order estimate.
 
-Move every vertex by at most ε times its radius, both along and across it.  Then Q sin θ − L cos θ of
-an edge at distance D from p changes by about 2√2 εD at most, so two edges gain or lose 4√2 εD
-against each other.  Along a level, an edge's function falls off from its tip like w·(angle)², where
-w = s·(1 − ρ) cos(h − θ)/(2 sin t).  While two tips pass, the one behind is hidden between the tip
-that passes it and the next pair, an angle of about 2φ away, as long as the tips are closer than
-4√2 εD/(2wφ): for a time of |t − tⱼ| < √2 εD/(wφ).  By the same angle vertices are displaced along
-the level.  The counts of ``weave`` need these times to be over before the next passing begins, φ
-away, and before the rim or the centre; and they need the displaced vertices to be in the kernel,
-of which a bulging level sees no more than an angle of (distance to the corner)/h beside an axis:
+Move every vertex by at most ε times its radius, both along and across it.  Then Q sin θ − L cos θ
+of an edge at distance D from p changes by about 2√2 εD at most, so two edges gain or lose 4√2 εD
+against each other.  Along a level, an edge's function falls off from its tip like w·(angle)²,
+where w = s·(1 − ρ) cos(h − θ)/(2 sin t).  While two tips pass, the one behind is hidden between
+the tip that passes it and the next pair, an angle of about 2φ away, as long as the tips are closer
+than 4√2 εD/(2wφ): for a time of |t − tⱼ| < √2 εD/(wφ).  By the same angle vertices are displaced
+along the level.  The counts of ``weave`` need these times to be over before the next passing
+begins, φ away, and before the rim or the centre; and they need the displaced vertices to be in the
+kernel, of which a bulging level sees no more than an angle of (distance to the corner)/h beside an
+axis:
 
     ε < gap·wφ / (√2 D).
 
-In the bulk of a zigzag star of fixed tilt w ~ 1/n and gap ~ φ ~ 1/n: the tolerance falls like
-n⁻³; in a convex weave w ~ 1/n², and it falls like n⁻⁴.  The first passing around the centre and the
-last one at the rim may bear less.  This is an estimate, with no proof; the tests and the study
-find all counts as predicted below a quarter of it.
+In a zigzag star of fixed tilt w ~ s/n and gap ~ φ ~ 1/n: away from the centre passings bear a
+noise like n⁻³, the first ones around it, where s ~ 1/n, one like n⁻⁴.  In a convex weave w ~ 1/n²
+and s ~ 1: all passings bear a noise like n⁻⁴.  This is an estimate, with no proof; the tests and
+the study find all counts as predicted below a quarter of it.
 """
 
 from __future__ import annotations
@@ -96,7 +97,9 @@ class _Levels:
             return np.array([math.inf])
         normal = self.h + self.weave.tilt - np.where(self.j % 2 == 1, 0.0, 2 * self.h)
         centre = self.centre / np.sin(self.level)
-        reach = np.sqrt(centre**2 + self.ratio * np.sin(2 * self.h - self.level) / np.sin(self.level))
+        reach = np.sqrt(
+            centre**2 + self.ratio * np.sin(2 * self.h - self.level) / np.sin(self.level)
+        )
         length = math.sqrt(1 + self.ratio**2 - 2 * self.ratio * math.cos(2 * self.h))
         edge = self.ratio * math.sin(2 * self.h) / length
         over = np.where(self.j == 1, math.inf, np.abs(reach - centre * np.cos(normal) - edge))
