@@ -25,10 +25,9 @@ SHAPES: Mapping[str, tuple[str, Callable[[int, float], float]]] = {
 FINDINGS: Mapping[str, str] = {
     "as predicted": "vertices, edges, cells and degrees are the predicted ones",
     "symmetric": (
-        "no noise: ties on exact mirror axes of the polygon in doubles stay ties; the cells are "
-        "the predicted ones, and the vertices too but for how rounding resolved the centre"
+        "no noise: as predicted for a polygon rounded to doubles, but for how the centre resolved"
     ),
-    "noise": "the noise is too large for the smallest gap between two passings of this weave",
+    "noise": "too much noise for the smallest gap between two passings of this weave",
     "unexplained": "the counts contradict the prediction",
 }
 
@@ -40,7 +39,7 @@ COLUMNS = (
 
 
 def compare(frame: pd.DataFrame) -> pd.DataFrame:
-    """One row for each counted weave in its kernel: what was counted and what was predicted.
+    """One row for each certified count of a weave in its kernel, beside what was predicted.
 
     ``frame`` has the columns of a study's rows.  ``shape`` is the tilt or δ that was asked for,
     ``tilt`` is ν in radians; ``noise`` is relative; ``gap`` is the distance of the passing
@@ -50,6 +49,7 @@ def compare(frame: pd.DataFrame) -> pd.DataFrame:
     """
     rows = frame[frame["family"].isin(list(SHAPES)) & (frame["status"] == "ok")]
     rows = rows[(rows["domain"] == "kernel") & (rows["objective"] == "smallest")]
+    rows = rows[rows["certified"].astype(bool)]
     records = [_record(row) for row in rows.to_dict("records")]
     table = pd.DataFrame.from_records(records, columns=list(COLUMNS))
     return table.sort_values(

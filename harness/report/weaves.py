@@ -146,15 +146,17 @@ def _summary(table: pd.DataFrame) -> str:
     if found.get("noise", 0):
         sentence += f", {found['noise']} differ because the noise was too large for them"
     wrong = int(found.get("unexplained", 0))
-    return f"{sentence}; {f'{wrong} contradict' if wrong else 'none contradicts'} the prediction."
+    verb = "contradict" if wrong > 1 else "contradicts"
+    return f"{sentence}; {wrong or 'none'} {verb} the prediction."
 
 
 def _findings_table(table: pd.DataFrame) -> Table:
     kinds = {"as predicted": "good", "symmetric": "good", "noise": "warn", "unexplained": "bad"}
     found = table.groupby(["family", "finding"]).size()
+    seen = set(table["finding"])
     body = [
         [
-            Cell(finding, finding, kinds[finding]),
+            Cell(finding, finding, kinds[finding] if finding in seen else ""),
             *(cell(float(found.get((family, finding), 0))) for family in SHAPES),
             Cell(meaning),
         ]
@@ -264,6 +266,7 @@ def _smoothed(
                         weave_figures.heat_map,
                         points=table,
                         exponents=(found.exponent.value, 2.0),
+                        through=transition,
                     ),
                     4.8,
                     3.6,
@@ -317,7 +320,7 @@ def _shown(estimate: Estimate) -> str:
 def _sentences(found: Collapse) -> Iterator[str]:
     yield (
         f"The curves of n = {', '.join(str(curve.n) for curve in found.curves)} collapse best as "
-        f"functions of ε·n^a with a = {_shown(found.exponent)}; what then remains between them is "
+        f"functions of ε·nᵃ with a = {_shown(found.exponent)}; what then remains between them is "
         f"{number(100 * found.spread)} % of the predicted vertices (root mean square)."
     )
     low, high = found.drift
@@ -332,7 +335,7 @@ def _sentences(found: Collapse) -> Iterator[str]:
     )
     if found.transition_exponent is not None:
         yield (
-            "The noise that leaves half of the vertices falls like n^−a with a = "
+            "The noise that leaves half of the vertices falls like n⁻ᵃ with a = "
             f"{_shown(found.transition_exponent)}."
         )
 
