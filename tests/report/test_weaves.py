@@ -12,6 +12,7 @@ from harness.analysis import analyse_group, smoothed, split
 from harness.analysis.weave import predict
 from harness.analysis.weave_rows import SHAPES
 from harness.report import weaves, write_report
+from harness.report.parts import Part
 from tests.analysis.frames import rows
 from tests.report.studies import sample, store
 
@@ -54,7 +55,7 @@ def noisy(exponent: float) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True)
 
 
-def parts_of(frame: pd.DataFrame) -> list[weaves.Part]:
+def parts_of(frame: pd.DataFrame) -> list[Part]:
     return weaves.parts([analyse_group(group) for group in split(frame)])
 
 
