@@ -34,7 +34,8 @@ FINDINGS: Mapping[str, str] = {
 COLUMNS = (
     *("family", "n", "shape", "noise", "replicate", "tilt", "passings", "gap", "tolerance"),
     *("strain", "vertices", "vertices_low", "vertices_high", "edges", "cells"),
-    *("predicted_cells", "generic_vertices", "generic_cells", "share", "finding"),
+    *("predicted_cells", "generic_vertices", "generic_cells", "share", "degrees"),
+    "finding",
 )
 
 
@@ -44,8 +45,9 @@ def compare(frame: pd.DataFrame) -> pd.DataFrame:
     ``frame`` has the columns of a study's rows.  ``shape`` is the tilt or δ that was asked for,
     ``tilt`` is ν in radians; ``noise`` is relative; ``gap`` is the distance of the passing
     nearest to rim or centre from it, in spacings; ``strain`` is noise and rounding over the
-    ``tolerance``; ``share`` is vertices over the generic prediction; ``finding`` is one of
-    ``FINDINGS``.  Rows of other families, domains and objectives, and failures, are left out.
+    ``tolerance``; ``share`` is vertices over the generic prediction; ``degrees`` reads
+    “28×3, 19×4”; ``finding`` is one of ``FINDINGS``.  Rows of other families, domains and
+    objectives, and failures, are left out.
     """
     rows = frame[frame["family"].isin(list(SHAPES)) & (frame["status"] == "ok")]
     rows = rows[(rows["domain"] == "kernel") & (rows["objective"] == "smallest")]
@@ -87,6 +89,7 @@ def _record(row: Mapping[Any, Any]) -> dict[str, object]:
         "generic_vertices": weave.vertices,
         "generic_cells": weave.cells,
         "share": vertices / weave.vertices,
+        "degrees": ", ".join(f"{count}×{degree}" for degree, count in sorted(degrees.items())),
         "finding": _finding(expected, vertices, edges, cells, degrees, strain),
     }
 

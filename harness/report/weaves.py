@@ -74,6 +74,7 @@ def _prediction(table: pd.DataFrame, download: Download) -> Part:
             "summary": _summary(table),
             "findings": _findings_table(table),
             "largest": _largest_table(generic),
+            "symmetric": _symmetric_table(table[table["noise"] == 0]),
             "deviations": _deviation_table(table),
             "figures": figures,
             "picture": picture,
@@ -154,6 +155,25 @@ def _largest_table(generic: pd.DataFrame) -> Table:
             ]
         )
     return Table("The largest n of each shape", head, body)
+
+
+def _symmetric_table(calm: pd.DataFrame) -> Table:
+    """The polygons without noise whose whole symmetry doubles can hold."""
+    head = ["family", "τ or δ", "n", "vertices", "cells", "predicted", "count × degree", "finding"]
+    body = [
+        [
+            Cell(str(row["family"])),
+            cell(row["shape"]),
+            cell(row["n"]),
+            cell(row["vertices"]),
+            cell(row["cells"]),
+            Cell(f"{row['vertices_low']:.0f}, {row['predicted_cells']:.0f}"),
+            Cell(str(row["degrees"])),
+            Cell(str(row["finding"]), str(row["finding"])),
+        ]
+        for row in calm[calm["n"].isin([4, 8])].to_dict("records")
+    ]
+    return Table("Exactly symmetric weaves", head, body)
 
 
 def _decimal(value: float) -> Cell:

@@ -13,7 +13,9 @@ from harness.analysis.weave import predict
 from harness.analysis.weave_rows import SHAPES
 from harness.report import weaves, write_report
 from harness.report.parts import Part
+from harness.report.weave_picture import ideal
 from tests.analysis.frames import rows
+from tests.analysis.weaves import corners, visual_angles
 from tests.report.studies import sample, store
 
 
@@ -110,3 +112,19 @@ def test_the_section_is_the_same_whatever_the_order_of_rows() -> None:
     mixed = frame.sample(frac=1.0, random_state=5)
     for one, other in zip(parts_of(frame), parts_of(mixed), strict=True):
         assert one.files == other.files
+
+
+def test_the_picture_of_the_ideal_weave_is_true() -> None:
+    """Its saddles are ties of two edges, its squares of four, by plain visual angles."""
+    shape = ideal()
+    vertices = corners(shape.weave.m, shape.ratio)
+    for tip in shape.passing():
+        direction = float(shape.tips(tip)[0])
+        for aside, tied in ((0.0, 2), (2 * shape.h, 4)):
+            radius = float(shape.radius(np.array(tip), np.array(aside)))
+            at = direction + aside
+            p = radius * np.array([np.cos(at), np.sin(at)])
+            if radius > shape.ratio * (1 - 1e-9):
+                continue  # in a corner, where the angles of its own edges are undefined
+            angles = np.sort(visual_angles(vertices, p))
+            assert np.ptp(angles[:tied]) < 1e-9 < angles[tied] - angles[0]
