@@ -15,11 +15,11 @@ from harness.analysis import planted as planting
 from harness.analysis.models import GREATEST_SHARE, LEAST_SHARE
 from harness.analysis.statistics import RESAMPLES
 from harness.analysis.verdict import LinearClaim
-from harness.report import figures, provenance, summary, tables, weaves
+from harness.report import figures, provenance, summary, tables
 from harness.report.build import REPORT, StudyGrowth
+from harness.report.chapters import Part, chapters
 from harness.report.examples import Example, example
 from harness.report.labels import bracket, number, percent, plain, sizes
-from harness.report.parts import Part
 from harness.report.sections import Cell, Download, Section, Table, cell, section
 from harness.report.style import inline, render
 
@@ -52,9 +52,9 @@ def outputs(study: StudyGrowth) -> dict[str, str]:
         files.update({panel.figure_path: panel.document for panel in part.panels})
         files.update({download.path: download.text for download in part.downloads})
     files.update({download.path: download.text for download in downloads.values()})
-    special = weaves.parts(study.groups)
-    for extra in special:
-        files.update(extra.files)
+    special = chapters(study.groups)
+    for chapter in special:
+        files.update(chapter.files)
     files[REPORT] = _page(study, sections, checks, downloads, overviews, examples, special)
     return files
 
@@ -84,12 +84,12 @@ def _page(
             claims=summary.by_linear_claim(study.groups, study.labels),
             control_sentence=summary.control_sentence(study.groups),
             overviews=overviews,
-            special=special,
             verdicts=_verdict_table(study),
             controls=_control_table(study),
             checks=[_check_view(check, labels) for check, labels in checks],
             families=list(_families(study, sections, examples)),
             failures=_failure_table(study),
+            special=special,
             downloads=downloads,
             method=_method(),
             provenance=provenance.entries(study.manifest),
