@@ -89,6 +89,6 @@ def sizes(values: Sequence[float]) -> str:
     return f"{values[0]:g} … {values[-1]:g} ({len(values)} sizes)"
 
 
-def plural(count: int, noun: str) -> str:
-    """1 task, 2 tasks."""
-    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+def plural(count: int, noun: str, many: str = "") -> str:
+    """1 task, 2 tasks; ``many`` where an s is not enough."""
+    return f"{count} {noun}" if count == 1 else f"{count} {many or noun + 's'}"
