@@ -37,22 +37,31 @@ STRIP = (1.0, 0.004)
 
 
 class Lens(Shapes):
-    """A window as small as a passing: only the edges that end there are followed closely."""
+    """A window as small as a passing: only what is at its vertices is followed, and shown."""
 
-    def __init__(self, diagram: PlanarMap, nodes: tuple[int, ...], reach: float) -> None:
-        """``nodes``: the vertices to be seen; ``reach`` of the window around their middle."""
-        self.ends = set(nodes)
+    def __init__(self, whole: Shapes, nodes: tuple[int, ...], reach: float) -> None:
+        """``whole``: the diagram as drawn without a lens, whose curves do for edges far away.
+
+        ``nodes``: the vertices to be seen; ``reach`` of the window around their middle.
+        """
+        self.whole, self.ends = whole, set(nodes)
+        diagram = whole.diagram
         middle = np.mean([diagram.nodes[k].point for k in nodes], axis=0)
         super().__init__(diagram, square(reach, (float(middle[0]), float(middle[1]))))
+        near = [edge for edge in diagram.edges if self.ends & {edge.start, edge.end}]
+        self.cells = {cell for edge in near for cell in (edge.left, edge.right)}
 
     @cached_property
     def curves(self) -> list[Points]:
         """As of any window; edges that end elsewhere are only as true as the outlines need."""
-        fine, coarse = 2e-3 * self.extent, 1e-4
         return [
-            edge.polyline(fine if self.ends & {edge.start, edge.end} else coarse)
-            for edge in self.diagram.edges
+            edge.polyline(2e-3 * self.extent) if self.ends & {edge.start, edge.end} else curve
+            for edge, curve in zip(self.diagram.edges, self.whole.curves, strict=True)
         ]
+
+    def outlines(self, cell: int) -> list[Points]:
+        """The outlines of a cell at one of the vertices; of others, none."""
+        return super().outlines(cell) if cell in self.cells else []
 
 
 def passings(diagram: PlanarMap) -> list[tuple[float, tuple[int, int], int]]:
@@ -76,13 +85,14 @@ def draw_woven_kernel(figure: Figure, _: Path) -> str:
     """The kernel of a zigzag star with 12 spikes; two passings and the centre under the lens."""
     diagram = diagram_of("zigzag", N, SEED)
     axes = canvas(figure, (0.0, 0.0, 5.5, 5.5), square(1.12))
-    _draw_star(axes, PrintShapes(diagram, natural_window(diagram)))
+    whole = PrintShapes(diagram, natural_window(diagram))
+    _draw_star(axes, whole)
     found = passings(diagram)
     middle = [k for k, node in enumerate(diagram.nodes) if np.hypot(*node.point) < 0.01]
     extent = max(np.hypot(*diagram.nodes[k].point) for k in middle)
     lenses = [
-        *(_lens_at(diagram, found, parity, place) for parity, place in ((0, 0.45), (1, -0.1))),
-        Lens(diagram, tuple(middle), 1.25 * float(extent)),
+        *(_lens_at(whole, found, parity, place) for parity, place in ((0, 0.45), (1, -0.1))),
+        Lens(whole, tuple(middle), 1.25 * float(extent)),
     ]
     for k, lens in enumerate(lenses):
         _draw_lens(figure, axes, lens, (5.72, 3.95 - 1.88 * k, 1.5, 1.5), "abc"[k])
@@ -100,14 +110,15 @@ def draw_woven_kernel(figure: Figure, _: Path) -> str:
 
 
 def _lens_at(
-    diagram: PlanarMap, found: list[tuple[float, tuple[int, int], int]], parity: int, height: float
+    whole: Shapes, found: list[tuple[float, tuple[int, int], int]], parity: int, height: float
 ) -> Lens:
     """The lens on the passing of one family that is nearest to a place on the right."""
+    nodes_of = whole.diagram.nodes
     length, nodes, _ = min(
         (each for each in found if each[2] == parity),
-        key=lambda each: np.hypot(*np.subtract(diagram.nodes[each[1][0]].point, (0.6, height))),
+        key=lambda each: np.hypot(*np.subtract(nodes_of[each[1][0]].point, (0.6, height))),
     )
-    return Lens(diagram, nodes, 1.4 * length)
+    return Lens(whole, nodes, 1.4 * length)
 
 
 def _draw_star(axes: Axes, shapes: Shapes) -> None:
