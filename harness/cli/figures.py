@@ -9,7 +9,9 @@ from pathlib import Path
 DESCRIPTION = """\
 Draw the figures: figure-1 to figure-6 are the paper's, made anew; the others are our own.
 Writes DIR/NAME.svg (or .pdf, .png), and DIR/captions.json: title, caption, recipe of each figure.
-Prints the paths.  Without NAME all are drawn, except those whose rows are missing."""
+A plot of stored rows has its
+table beside it, DIR/NAME.csv.  Prints the paths.  Without NAME all are drawn, except those whose
+rows are missing."""
 
 
 def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

@@ -9,7 +9,17 @@ from harness.report.plates.paper import draw_figure_1, draw_figure_2, draw_figur
 from harness.report.plates.parts import recipe_of
 from harness.report.plates.peaks import draw_peaks, draw_star
 from harness.report.plates.plate import Plate, printed
-from harness.report.plates.studies import GROWTH, SMOOTHED, draw_collapse, draw_growth
+from harness.report.plates.studies import (
+    GROWTH,
+    SMOOTHED,
+    WEAVE,
+    collapse_table,
+    constants_table,
+    draw_collapse,
+    draw_constants,
+    draw_growth,
+    growth_table,
+)
 from harness.report.plates.weaves import SEED, N, draw_convex_weave, draw_woven_kernel
 
 __all__ = ["PLATES", "Plate", "printed"]
@@ -50,13 +60,24 @@ _ALL = (
         recipe_of("convex-weave", N, SEED),
     ),
     Plate("families", "The families of instances", (7.3, gallery_height()), draw_gallery),
-    Plate("growth", "How the counts grow", (7.0, 4.6), draw_growth, studies=GROWTH),
+    Plate("growth", "How the counts grow", (7.0, 4.6), draw_growth, (), GROWTH, growth_table),
+    Plate(
+        "constants",
+        "The constant of the weave",
+        (7.2, 3.6),
+        draw_constants,
+        (),
+        WEAVE,
+        constants_table,
+    ),
     Plate(
         "collapse",
         "Noise unravels the weave",
         (7.0, 5.6),
         draw_collapse,
-        studies=SMOOTHED,
+        (),
+        SMOOTHED,
+        collapse_table,
     ),
 )
 

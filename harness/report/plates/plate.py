@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+import pandas as pd
 from matplotlib.figure import Figure
 
 from harness.errors import UserError
@@ -20,7 +21,8 @@ class Plate:
     ``size``: width and height in inches.  ``draw`` fills a figure of that size and returns the
     caption, with every number in it taken from what was drawn; its argument is the directory of
     results, from which only plates with ``studies`` read.  ``studies``: the studies there whose
-    rows it shows, any one of which will do.  ``recipe``: commands that reproduce what it shows.
+    rows it shows, any one of which will do; ``data`` makes of them the table that is plotted.
+    ``recipe``: commands that reproduce what it shows.
     """
 
     name: str
@@ -29,6 +31,7 @@ class Plate:
     draw: Callable[[Figure, Path], str]
     recipe: tuple[str, ...] = ()
     studies: tuple[str, ...] = ()
+    data: Callable[[Path], pd.DataFrame] | None = None
 
     def lacks(self, results: Path) -> str:
         """Why it cannot be drawn from these results; empty if it can."""

@@ -11,6 +11,7 @@ from typing import Any
 from harness.errors import UserError
 from harness.files import replace
 from harness.report.plates.plate import Plate, printed
+from harness.report.tables import to_csv
 
 CAPTIONS = "captions.json"
 
@@ -27,7 +28,7 @@ class Shown:
 
 
 def put(plate: Plate, directory: Path, results: Path, form: str = "svg") -> Path:
-    """Draw a plate into a directory and enter its caption there; the path of its file.
+    """Draw a plate into a directory, with the table behind it and its caption; its path.
 
     Raises UserError if the rows it shows are missing, or the captions there are damaged.
     """
@@ -36,6 +37,8 @@ def put(plate: Plate, directory: Path, results: Path, form: str = "svg") -> Path
     directory.mkdir(parents=True, exist_ok=True)
     path = directory / f"{plate.name}.{form}"
     replace(path, picture)
+    if plate.data is not None:
+        replace(directory / f"{plate.name}.csv", to_csv(plate.data(results)).encode())
     entries[plate.name] = plate.entry(caption)
     ordered = {name: entries[name] for name in sorted(entries)}
     text = json.dumps(ordered, indent=2, ensure_ascii=False) + "\n"
