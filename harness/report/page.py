@@ -55,6 +55,17 @@ def outputs(study: StudyGrowth) -> dict[str, str]:
     return files
 
 
+def environment() -> Environment:
+    """Where the templates of the pages are found."""
+    return Environment(
+        loader=PackageLoader("harness.report"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+
+
 def _page(
     study: StudyGrowth,
     sections: list[Section],
@@ -63,16 +74,11 @@ def _page(
     overviews: list[dict[str, str]],
     examples: Mapping[str, Example | None],
 ) -> str:
-    environment = Environment(
-        loader=PackageLoader("harness.report"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
     manifest = study.manifest or {}
     return (
-        environment.get_template("report.html").render(
+        environment()
+        .get_template("report.html")
+        .render(
             name=study.name,
             description=str(manifest.get("description") or ""),
             tasks=summary.tasks_sentence(study.groups, study.planned),
@@ -85,7 +91,7 @@ def _page(
             families=list(_families(study, sections, examples)),
             failures=_failure_table(study),
             downloads=downloads,
-            method=_method(),
+            method=method_facts(),
             provenance=provenance.entries(study.manifest),
             study_file=study.study_file,
         )
@@ -97,7 +103,8 @@ def _download(title: str, table: pd.DataFrame) -> Download:
     return Download(title, f"data/{title}.csv", tables.to_csv(table))
 
 
-def _method() -> dict[str, str]:
+def method_facts() -> dict[str, str]:
+    """The numbers that the text about the method names."""
     return {
         "level": percent(challenging.LEVEL),
         "confirming": percent(challenging.CONFIRMING_LEVEL),
