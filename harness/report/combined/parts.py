@@ -19,7 +19,7 @@ Tone = Literal["faster", "slower", ""]
 
 @dataclass(frozen=True)
 class Picture:
-    """A figure of the page with its caption, its file, and the table behind it, if any."""
+    """A figure, its caption, its file, and the table behind it, if any; wide ones stand alone."""
 
     name: str
     title: str
@@ -28,6 +28,7 @@ class Picture:
     path: str
     recipe: Sequence[str] = ()
     download: Download | None = None
+    is_wide: bool = False
 
 
 @dataclass(frozen=True)
@@ -70,7 +71,7 @@ class Workshop:
         shown = inline(document.decode(), name, f"{plate.title}. {caption}")
         return Picture(name, plate.title, caption, shown, path, (), download)
 
-    def shelved(self, names: Sequence[str]) -> list[Picture]:
+    def shelved(self, names: Sequence[str], wide: Sequence[str] = ()) -> list[Picture]:
         """Those of these plates that ``avd figures`` has put into the directory."""
         there = shelf(self.results / "figures")
         return [
@@ -81,6 +82,7 @@ class Workshop:
                 inline(there[name].document, name, there[name].title),
                 f"figures/{name}.svg",
                 there[name].recipe,
+                is_wide=name in wide,
             )
             for name in names
             if name in there

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pandas as pd
 
 from harness.report.combined.parts import Chapter, Workshop, absent, share
@@ -87,21 +89,47 @@ def noise_chapter(shop: Workshop) -> Chapter:
         ]
         for family, n, full, sigma in halves
     ]
-    head = ["family", "n", "vertices at least noise", "σ at which half are left", "σ n²"]
+    slopes = _slopes(halves)
+    for line, slope in zip(rows, slopes, strict=True):
+        line.append(Cell(number(slope), "" if slope is None else f"{slope:.9g}"))
+    falls = all(slope is None or slope < 0 for slope in slopes) and any(slopes)
+    head = ["family", "n", "vertices at least noise", "σ at which half are left", "σ n²", "slope"]
     return Chapter(
         *NOISE,
-        "Little: less and less as n grows",
-        "slower",
+        "Less and less as n grows" if falls else "No clear answer from these rows",
+        "slower" if falls else "",
         [
-            f"{polygons} perturbed weaves, {share(certified, polygons)} counts certified. The "
-            "noise at which half of the vertices are left falls as n grows (table; interpolated "
-            "between the noises that were run): quadratic complexity is a phenomenon of carefully "
-            "placed polygons."
+            " ".join(_reading(falls, [slope for slope in slopes if slope is not None])),
+            f"{polygons} perturbed weaves, {share(certified, polygons)} counts certified.",
         ],
         [shop.plate("collapse")],
         [Table("Where the weave comes apart", head, rows)],
         sources=[directory.name],
     )
+
+
+def _reading(falls: bool, slopes: list[float]) -> list[str]:
+    """What the table says, in a sentence."""
+    if not falls:
+        return ["Too few sizes, or noises, to say where the weaves come apart."]
+    return [
+        "The noise at which half of the vertices are left falls as n grows, like n to a power "
+        f"between {number(min(slopes))} and {number(max(slopes))} from one size to the next "
+        "(interpolated between the noises that were run): the more edges a weave has, the more "
+        "carefully its vertices have to be placed."
+    ]
+
+
+def _slopes(halves: list[tuple[str, int, float, float | None]]) -> list[float | None]:
+    """Of each line the exponent of σ in n since the size before, where there is one."""
+    found: list[float | None] = []
+    for k, (family, n, _, sigma) in enumerate(halves):
+        before = halves[k - 1] if k and halves[k - 1][0] == family else None
+        if before is None or sigma is None or before[3] is None:
+            found.append(None)
+        else:
+            found.append(math.log(sigma / before[3]) / math.log(n / before[1]))
+    return found
 
 
 def _halves(table: pd.DataFrame) -> list[tuple[str, int, float, float | None]]:

@@ -14,6 +14,7 @@ from matplotlib.patches import Circle, ConnectionPatch, Patch, PathPatch
 from harness.diagram.planar_map import PlanarMap
 from harness.report.drawing_layers import compound
 from harness.report.drawing_shapes import Points, Shapes, natural_window
+from harness.report.labels import number
 from harness.report.plates.colours import weave_colour
 from harness.report.plates.curves import PrintShapes, thinned
 from harness.report.plates.parts import (
@@ -103,7 +104,7 @@ def draw_woven_kernel(figure: Figure, _: Path) -> str:
         "mirror image; each cell has the colour of its edge on the rim. At every crossing of the "
         "weave a tip of one family passes a tip of the other, and what looks like one point is "
         f"two triple points, joined by an edge between two cells of one family: {len(found)} such "
-        f"edges outside the centre, none longer than {_power(max(found)[0])} of the star’s "
+        f"edges outside the centre, none longer than {number(max(found)[0], 2)} of the star’s "
         "radius. (a), (b) two of them under the lens; (c) the centre, where all tips start: "
         f"{len(middle)} triple points."
     )
@@ -159,15 +160,8 @@ def _draw_lens(
             middle, (0.0, 0.5), axes.transData, view.transAxes, lw=0.6, color=INK, shrinkA=3
         )
     )
-    text = f"({name}) radius {_power(reach)}"
+    text = f"({name}) radius {number(reach, 2)}"
     view.text(0.5, -0.1, text, transform=view.transAxes, ha="center", fontsize=8, color=INK)
-
-
-def _power(value: float) -> str:
-    """Two digits and a power of ten, in plain text."""
-    mantissa, exponent = f"{value:.1e}".split("e")
-    raised = str(int(exponent)).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
-    return f"{mantissa}·10{raised}"
 
 
 def _legend(figure: Figure) -> None:

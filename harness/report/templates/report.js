@@ -24,7 +24,7 @@ for (const table of document.querySelectorAll("table.sortable")) {
     head.addEventListener("keydown", (event) => { if (event.key === "Enter") sort(head, column); });
   });
 }
-// On paper nothing is folded away.
+// On paper nothing is folded away but what fills pages.
 addEventListener("beforeprint", () => {
-  for (const details of document.querySelectorAll("details")) details.open = true;
+  for (const details of document.querySelectorAll("details:not(.bulk)")) details.open = true;
 });
