@@ -78,8 +78,8 @@ def _sentences(
         if len(part):
             best = part.iloc[0]
             yield (
-                f"In the {domain}, the curve “{best['curve']}” has a polygon of n = {best['n']} "
-                f"edges with {best['vertices']} certified vertices: {number(best['per_edge'])} for "
+                f"In the {domain}, a polygon of the family {best['curve']} with n = {best['n']} "
+                f"edges has {best['vertices']} vertices, certified: {number(best['per_edge'])} for "
                 f"each edge, {number(best['per_square'])}·n². No bound of c·n vertices holds with "
                 f"c below {number(best['per_edge'])}."
             )

@@ -17,6 +17,7 @@ from harness.report.combined.weaves import constant_chapter, noise_chapter
 from harness.report.page import environment, method_facts
 from harness.report.provenance import entries
 from harness.study.manifest import MANIFEST, read_manifest
+from harness.study.store import ROWS
 
 CHAPTERS: tuple[Maker, ...] = (
     linear_chapter,
@@ -30,17 +31,24 @@ GALLERY = ("figure-1", "figure-2", "figure-3", "figure-4", "star", "peaks", "fam
 REPORT = "report.html"
 
 
-def write(directory: Path) -> tuple[Path, list[str]]:
-    """Make the chapters and write every file, the page last."""
+def outputs(directory: Path) -> tuple[dict[str, str], list[str]]:
+    """Every file of the report, by its path in the directory, and the answers for a terminal."""
     shop = Workshop(directory)
     chapters = [make(shop) for make in CHAPTERS]
     page = _page(shop, chapters)
-    for relative, text in shop.files.items():
+    return {**shop.files, REPORT: page}, lines(chapters)
+
+
+def write(directory: Path) -> tuple[Path, list[str]]:
+    """Write every file of the report in one step each, the page last."""
+    files, answers = outputs(directory)
+    page = files.pop(REPORT)
+    for relative, text in files.items():
         path = directory / relative
         path.parent.mkdir(parents=True, exist_ok=True)
         replace(path, text.encode())
     replace(directory / REPORT, page.encode())
-    return directory / REPORT, lines(chapters)
+    return directory / REPORT, answers
 
 
 def lines(chapters: Sequence[Chapter]) -> list[str]:
@@ -69,7 +77,7 @@ def _source(results: Path, name: str) -> dict[str, Any]:
     manifest = _manifest(directory)
     return {
         "name": name,
-        "rows": f"{name}/rows.csv",
+        "rows": f"{name}/rows.csv" if (directory / ROWS).exists() else "",
         "report": f"{name}/report.html" if (directory / REPORT).exists() else "",
         "description": str((manifest or {}).get("description") or ""),
         "provenance": entries(manifest),

@@ -1,0 +1,197 @@
+"""The page of all studies: answers from rows, nothing from elsewhere, no failure without rows."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import re
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import pytest
+
+from harness.cli.main import main
+from harness.errors import UserError
+from harness.report.combined import is_collection, write_collection
+from harness.report.combined.growth import record_table
+from harness.report.combined.page import CHAPTERS, REPORT, outputs
+from harness.report.combined.weaves import _crossing
+from harness.report.plates import PLATES
+from harness.report.plates.shelf import put
+from harness.study.meshes import COLUMNS as MESH_COLUMNS
+from tests.analysis.frames import rows
+from tests.report.pages import Page
+from tests.report.studies import sample, store
+
+TILT = 0.5235987755982988
+
+
+def weaves(noises: list[float], power: int) -> pd.DataFrame:
+    """Rows of both weaves that come apart at σ = n⁻³, planted."""
+    parts = []
+    for family, shape in (("zigzag", {"tilt": TILT}), ("convex-weave", {"delta": 0.5})):
+        for noise in noises:
+            params = {**shape, "noise": noise, "noise_power": power}
+
+            def left(n: int, _: Any, noise: float = noise) -> float:
+                return n * n / 3 / (1 + noise / n**power * n**3)
+
+            parts.append(
+                rows(family, left, sizes=(16, 32, 64), replicates=3, params=params).astype(object)
+            )
+    return pd.concat(parts, ignore_index=True)
+
+
+def meshes(directory: Path) -> None:
+    directory.mkdir()
+    text = io.StringIO()
+    writer = csv.DictWriter(text, MESH_COLUMNS, restval="0", lineterminator="\n")
+    writer.writeheader()
+    for method, gain in (("apex", -1.0), ("all", 2.0)):
+        for seed in range(3):
+            figures = {"smallest_before": 10.0, "smallest": 10.0 + gain + seed, "seconds": 0.5}
+            writer.writerow({"family": "x", "n": 5, "seed": seed, "method": method, **figures})
+    (directory / "rows.csv").write_text(text.getvalue())
+
+
+def audit(directory: Path) -> None:
+    (directory / "figures").mkdir(parents=True)
+    verdicts = {
+        "lemma-1": {"verdict": "holds on all 7 tried", "tally": {"holds": 7, "fails": 0}},
+        "lemma-2": {
+            "verdict": "fails on 2 of 5",
+            "tally": {"holds": 3, "fails": 2, "undecided": 1},
+            "example": {"message": "segment 0 has <1> cell"},
+        },
+    }
+    (directory / "verdicts.json").write_text(json.dumps(verdicts))
+    drawing = '<svg xmlns="http://www.w3.org/2000/svg" width="9" height="9"><path d="M 0 0"/></svg>'
+    (directory / "figures" / "lemma-2.svg").write_text(drawing)
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    root = tmp_path_factory.mktemp("all") / "results"
+    still = weaves([1e-3], 3)
+    store(root / "conjecture", pd.concat([sample(), still], ignore_index=True))
+    store(root / "smoothed", weaves([0.01, 0.1, 1.0, 10.0, 100.0], 3))
+    meshes(root / "mesh")
+    audit(root / "audit")
+    put(PLATES["figure-6"], root / "figures", root)
+    return root
+
+
+@pytest.fixture(scope="module")
+def files(results: Path) -> dict[str, str]:
+    return outputs(results)[0]
+
+
+@pytest.fixture(scope="module")
+def page(files: dict[str, str]) -> Page:
+    return Page(files[REPORT])
+
+
+def words(text: str) -> str:
+    return " ".join("".join(Page(text).words).split())
+
+
+def test_nothing_is_loaded_from_elsewhere(files: dict[str, str], page: Page) -> None:
+    assert all(load.startswith(("data:", "#")) for load in page.loads)
+    text = files[REPORT]
+    for address in re.findall(r"https?://[^\s\"'<]+", text):
+        assert address.startswith("http://www.w3.org/"), address  # names of XML, never fetched
+    assert all(css.startswith("#") for css in re.findall(r"url\(([^)]*)\)", text))
+    assert "@import" not in text
+    assert page.scripts == 1
+    assert "default-src 'none'" in text
+
+
+def test_html_is_well_formed_with_unique_ids_and_square_tables(page: Page) -> None:
+    assert not page.open
+    assert max(Counter(page.ids).values()) == 1
+    assert all(len(set(widths)) <= 1 for widths in page.widths)
+
+
+def test_links_lead_somewhere(results: Path, files: dict[str, str], page: Page) -> None:
+    for link in page.links:
+        if link.startswith("#"):
+            assert link[1:] in page.ids
+        elif not link.startswith("data:"):
+            assert link in files or (results / link).exists(), link
+    for name in files:
+        assert name == REPORT or name in page.links, f"{name} is linked from nowhere"
+
+
+def test_answers_come_from_the_rows(results: Path, files: dict[str, str]) -> None:
+    said = words(files[REPORT])
+    records = pd.read_csv(io.StringIO(files["data/largest-counts.csv"]))
+    best = records[records["domain"] == "kernel"].iloc[0]
+    stored = pd.read_csv(results / "conjecture" / "rows.csv")
+    counted = stored[(stored["status"] == "ok") & (stored["domain"] == "kernel")]
+    assert best["per_edge"] == pytest.approx((counted["vertices"] / counted["segments"]).max())
+    assert f"n = {best['n']} edges has {best['vertices']} vertices, certified" in said
+    assert "fails on 2 of 5" in said
+    assert "segment 0 has <1> cell" in said
+    assert "1 of 2 readings survive" in said
+    assert "The smallest angle rose in 4 of 6 runs" in said
+    assert "raised the smallest angle in 1 of 3 meshes and lowered it in 1" in said
+
+
+def test_the_planted_transition_is_found(files: dict[str, str]) -> None:
+    said = words(files[REPORT]).replace("−", "-")
+    found = re.search(r"falls as n grows, like n to a power between (\S+) and (\S+) from", said)
+    assert found is not None
+    assert [float(power) for power in found.groups()] == pytest.approx([-3, -3], abs=0.03)
+
+
+def test_uncertified_counts_are_no_records() -> None:
+    from harness.report.build import analyse
+
+    frame = rows("zigzag", lambda n, _: n * n, params={"tilt": TILT})
+    frame["certified"] = frame["n"] < 20
+    study = analyse(frame, "doubtful")
+    (record,) = record_table(study.groups, study.labels).to_dict("records")
+    assert (record["n"], record["vertices"]) == (16, 256)
+
+
+def test_same_rows_same_bytes(results: Path, files: dict[str, str]) -> None:
+    assert outputs(results)[0] == files
+
+
+def test_chapters_without_rows_say_so(tmp_path: Path) -> None:
+    root = tmp_path / "results"
+    store(root / "other", sample())
+    path, answers = write_collection(root)
+    assert len(answers) == len(CHAPTERS)
+    text = path.read_text()
+    assert words(text).count("stored here yet") == 2 * len(CHAPTERS)  # in the answers and below
+    assert not Page(text).open
+
+
+def test_the_verb_knows_a_directory_of_studies(results: Path, tmp_path: Path, capsys) -> None:
+    assert is_collection(results)
+    assert not is_collection(results / "conjecture")
+    assert not is_collection(tmp_path)
+    assert main(["report", str(results)]) == 0
+    out = capsys.readouterr().out.splitlines()
+    assert out[0] == str(results / REPORT)
+    assert any(line.startswith("Which statements of the paper hold? 1 of 2") for line in out)
+
+
+def test_damaged_files_are_refused(tmp_path: Path) -> None:
+    root = tmp_path / "results"
+    audit(root / "audit")
+    (root / "audit" / "verdicts.json").write_text("[1]")
+    with pytest.raises(UserError, match=r"verdicts\.json: not the verdicts"):
+        outputs(root)
+    (root / "audit" / "verdicts.json").write_text("{")
+    with pytest.raises(UserError, match=r"verdicts\.json: cannot be read"):
+        outputs(root)
+
+
+def test_crossings_are_interpolated_in_the_logarithm() -> None:
+    assert _crossing([1.0, 100.0], [10.0, 0.0], 5.0) == pytest.approx(10.0)
+    assert _crossing([1.0, 10.0, 100.0], [9.0, 9.0, 8.0], 5.0) is None
