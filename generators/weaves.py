@@ -48,10 +48,15 @@ def zigzag(
     of tips described in this module.  O(n).
     """
     ZIGZAG.check(n, {"tilt": tilt, "noise": noise, "noise_power": noise_power})
+    inner = zigzag_inner_radius(n, tilt)
+    return _alternating("zigzag", n, seed, inner, noise * inverse_power(n, noise_power))
+
+
+def zigzag_inner_radius(n: int, tilt: float) -> float:
+    """ρ = √(1 + κ²) − κ with κ = tan(tilt) sin(2π/n), the inner radius of ``zigzag``."""
     turns = tilt / (2.0 * math.pi)
     kappa = sine(turns) / cosine(turns) * sine(1.0 / n)
-    inner = 1.0 / (kappa + float(np.sqrt(1.0 + kappa * kappa)))  # √(1 + κ²) − κ, stably
-    return _alternating("zigzag", n, seed, inner, noise * inverse_power(n, noise_power))
+    return 1.0 / (kappa + float(np.sqrt(1.0 + kappa * kappa)))  # stably
 
 
 def convex_weave(
@@ -69,8 +74,13 @@ def convex_weave(
     Source: the convex counterexample to linear complexity in the kernel; see this module.  O(n).
     """
     CONVEX_WEAVE.check(n, {"delta": delta, "noise": noise, "noise_power": noise_power})
-    inner = 1.0 - delta * _sagitta(n)
+    inner = convex_inner_radius(n, delta)
     return _alternating("convex-weave", n, seed, inner, noise * inverse_power(n, noise_power))
+
+
+def convex_inner_radius(n: int, delta: float) -> float:
+    """ρ = 1 − δ(1 − cos 2π/n), the inner radius of ``convex_weave``."""
+    return 1.0 - delta * _sagitta(n)
 
 
 def _alternating(family: str, n: int, seed: int, inner: float, size: float) -> Array:
