@@ -15,7 +15,7 @@ from harness.analysis import planted as planting
 from harness.analysis.models import GREATEST_SHARE, LEAST_SHARE
 from harness.analysis.statistics import RESAMPLES
 from harness.analysis.verdict import LinearClaim
-from harness.report import figures, provenance, summary, tables
+from harness.report import figures, provenance, summary, tables, weaves
 from harness.report.build import REPORT, StudyGrowth
 from harness.report.examples import Example, example
 from harness.report.labels import bracket, number, percent, plain, sizes
@@ -51,7 +51,10 @@ def outputs(study: StudyGrowth) -> dict[str, str]:
         files.update({panel.figure_path: panel.document for panel in part.panels})
         files.update({download.path: download.text for download in part.downloads})
     files.update({download.path: download.text for download in downloads.values()})
-    files[REPORT] = _page(study, sections, checks, downloads, overviews, examples)
+    special = weaves.parts(study.groups)
+    for extra in special:
+        files.update(extra.files)
+    files[REPORT] = _page(study, sections, checks, downloads, overviews, examples, special)
     return files
 
 
@@ -73,6 +76,7 @@ def _page(
     downloads: dict[str, Download],
     overviews: list[dict[str, str]],
     examples: Mapping[str, Example | None],
+    special: list[weaves.Part],
 ) -> str:
     manifest = study.manifest or {}
     return (
@@ -85,6 +89,7 @@ def _page(
             claims=summary.by_linear_claim(study.groups, study.labels),
             control_sentence=summary.control_sentence(study.groups),
             overviews=overviews,
+            special=special,
             verdicts=_verdict_table(study),
             controls=_control_table(study),
             checks=[_check_view(check, labels) for check, labels in checks],
