@@ -72,7 +72,7 @@ def parts(groups: Sequence[GroupGrowth]) -> list[Part]:
     found = []
     if not table.empty and (table.groupby("family")["shape"].nunique() >= LEAST_SHAPES).any():
         found.append(_prediction(table, download))
-    noisy = list(_collapses(table))
+    noisy = list(collapses(table))
     if noisy:
         found.append(_smoothed(noisy, download))
     return found
@@ -88,7 +88,7 @@ def _prediction(table: pd.DataFrame, download: Download) -> Part:
             f"figures/weave-{family}.svg",
             render(
                 partial(
-                    weave_figures.against_prediction, table=part, curves=_predicted(family, part)
+                    weave_figures.against_prediction, table=part, curves=predicted(family, part)
                 ),
                 8.6,
                 3.6,
@@ -109,6 +109,7 @@ def _prediction(table: pd.DataFrame, download: Download) -> Part:
         "weave.html",
         {
             "summary": _summary(table),
+            "unexplained": int((table["finding"] == "unexplained").sum()),
             "findings": _findings_table(table),
             "largest": _largest_table(generic),
             "deviations": _deviation_table(table),
@@ -123,7 +124,7 @@ def _prediction(table: pd.DataFrame, download: Download) -> Part:
     )
 
 
-def _predicted(family: object, part: pd.DataFrame) -> pd.DataFrame:
+def predicted(family: object, part: pd.DataFrame) -> pd.DataFrame:
     """The prediction on a fine grid of shapes, for the sizes that were counted."""
     name = str(family)
     low, high = float(part["shape"].min()), float(part["shape"].max())
@@ -223,7 +224,8 @@ def _deviation_table(table: pd.DataFrame) -> Table:
 # --- noise ----------------------------------------------------------------------------------------
 
 
-def _collapses(table: pd.DataFrame) -> Iterator[tuple[str, float, pd.DataFrame, Collapse]]:
+def collapses(table: pd.DataFrame) -> Iterator[tuple[str, float, pd.DataFrame, Collapse]]:
+    """(family, shape, its rows, how they scale) of each weave with noises enough at two sizes."""
     for (family, shape), part in table.groupby(["family", "shape"], sort=True):
         noises = part[part["noise"] > 0].groupby("n")["noise"].nunique()
         if (noises >= LEAST_NOISES).sum() >= 2:
@@ -238,7 +240,7 @@ def _smoothed(
     views, figures, downloads = [], [], [download]
     for family, shape, rows, found in noisy:
         name = f"smoothed-{family}-{shape:.3g}"
-        points = Download(f"{name}", f"data/{name}.csv", tables.to_csv(_points(rows)))
+        points = Download(f"{name}", f"data/{name}.csv", tables.to_csv(points_of(rows)))
         table = tables.from_csv(points.text)
         transition = {n: estimate.value for n, estimate in found.transition}
         title = f"{family}, {SHAPES[family][0]} = {shape:.4g}"
@@ -276,6 +278,8 @@ def _smoothed(
         views.append(
             {
                 "title": title,
+                "family": family,
+                "exponent": found.exponent,
                 "sentences": list(_sentences(found)),
                 "figures": drawn,
                 "download": points,
@@ -292,7 +296,7 @@ def _smoothed(
     )
 
 
-def _points(rows: pd.DataFrame) -> pd.DataFrame:
+def points_of(rows: pd.DataFrame) -> pd.DataFrame:
     """Median and quartiles of the share at every n and noise."""
     records = []
     for (n, noise), part in rows[rows["noise"] > 0].groupby(["n", "noise"], sort=True):

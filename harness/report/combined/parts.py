@@ -12,6 +12,7 @@ from harness.report.plates.shelf import shelf
 from harness.report.sections import Download, Table
 from harness.report.style import inline
 from harness.report.tables import to_csv
+from harness.report.weaves import Part
 
 #: The look of an answer: against the paper's expectation, with it, or neither.
 Tone = Literal["faster", "slower", ""]
@@ -36,7 +37,8 @@ class Chapter:
     """One question, its answer in a word and in a few sentences, and the evidence.
 
     ``missing`` says which rows there are none of; then there is no answer.  ``sources`` are the
-    studies it was made from, as directories relative to the page.
+    studies it was made from, as directories relative to the page.  ``part`` has a template of
+    its own, which comes last.
     """
 
     slug: str
@@ -50,6 +52,7 @@ class Chapter:
     downloads: Sequence[Download] = ()
     sources: Sequence[str] = ()
     missing: str = ""
+    part: Part | None = None
 
 
 @dataclass

@@ -2,6 +2,18 @@
 
 from __future__ import annotations
 
+from functools import partial
+
+from harness.analysis.weave_rows import SHAPES
+from harness.report.plates.comparisons import (
+    SMOOTHED,
+    WEAVE,
+    draw_collapse,
+    draw_tips,
+    draw_weaves,
+    smoothed_table,
+    weave_table,
+)
 from harness.report.plates.families import draw_gallery
 from harness.report.plates.families import height as gallery_height
 from harness.report.plates.meshes import draw_figure_5, draw_figure_6
@@ -9,17 +21,7 @@ from harness.report.plates.paper import draw_figure_1, draw_figure_2, draw_figur
 from harness.report.plates.parts import recipe_of
 from harness.report.plates.peaks import draw_peaks, draw_star
 from harness.report.plates.plate import Plate, printed
-from harness.report.plates.studies import (
-    GROWTH,
-    SMOOTHED,
-    WEAVE,
-    collapse_table,
-    constants_table,
-    draw_collapse,
-    draw_constants,
-    draw_growth,
-    growth_table,
-)
+from harness.report.plates.studies import GROWTH, draw_growth, growth_table
 from harness.report.plates.weaves import SEED, N, draw_convex_weave, draw_woven_kernel
 
 __all__ = ["PLATES", "Plate", "printed"]
@@ -60,24 +62,31 @@ _ALL = (
         recipe_of("convex-weave", N, SEED),
     ),
     Plate("families", "The families of instances", (7.3, gallery_height()), draw_gallery),
+    Plate("tips", "How the weave comes about", (8.6, 4.3), draw_tips),
     Plate("growth", "How the counts grow", (7.0, 4.6), draw_growth, (), GROWTH, growth_table),
-    Plate(
-        "constants",
-        "The constant of the weave",
-        (7.2, 3.6),
-        draw_constants,
-        (),
-        WEAVE,
-        constants_table,
+    *(
+        Plate(
+            f"counts-{family}",
+            f"Counts and prediction: {family}",
+            (8.6, 3.6),
+            partial(draw_weaves, family=family),
+            (),
+            WEAVE,
+            partial(weave_table, family=family),
+        )
+        for family in SHAPES
     ),
-    Plate(
-        "collapse",
-        "Noise unravels the weave",
-        (7.0, 5.6),
-        draw_collapse,
-        (),
-        SMOOTHED,
-        collapse_table,
+    *(
+        Plate(
+            f"collapse-{family}",
+            f"Noise unravels the weave: {family}",
+            (8.6, 3.4),
+            partial(draw_collapse, family=family),
+            (),
+            SMOOTHED,
+            partial(smoothed_table, family=family),
+        )
+        for family in SHAPES
     ),
 )
 
