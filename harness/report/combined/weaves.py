@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
 from harness.report.build import read
 from harness.report.combined.parts import Chapter, Workshop, absent
 from harness.report.labels import number
 from harness.report.plates.comparisons import SMOOTHED, WEAVE
 from harness.report.plates.studies import first_of
-from harness.report.weaves import Part, parts
+from harness.report.sections import Download
+from harness.report.weaves import Figure, Part, parts
 
 CONSTANT = ("weave", "How many vertices does a weave have?")
 NOISE = ("smoothed", "How much noise does a weave bear?")
@@ -52,5 +57,18 @@ def _part(shop: Workshop, studies: tuple[str, ...], slug: str) -> tuple[str, Par
     part = next((part for part in parts(read(directory).groups) if part.slug == slug), None)
     if part is None:
         return None
-    shop.files.update(part.files)
-    return directory.name, part
+    # Its files are those beside the study's own report; another study has some of the same name.
+    here = replace(part, **_moved(vars(part), directory.name))
+    shop.files.update(here.files)
+    return directory.name, here
+
+
+def _moved(value: Any, folder: str) -> Any:
+    """The same with every figure and table in a folder."""
+    if isinstance(value, Figure | Download):
+        return replace(value, path=f"{folder}/{value.path}")
+    if isinstance(value, Mapping):
+        return {name: _moved(item, folder) for name, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_moved(item, folder) for item in value]
+    return value

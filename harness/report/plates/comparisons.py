@@ -24,8 +24,8 @@ def draw_tips(figure: Figure, _: Path) -> str:
     weave = ideal().weave
     return (
         f"How the weave comes about. Left: the kernel of the zigzag star with n = {weave.n} edges "
-        "and its ideal diagram (black); the two families of edges and the paths of their tips, where a "
-        "level circle of an edge comes nearest to the centre, are blue and vermillion. Right: the "
+        "and its ideal diagram (black); the two families of edges and the paths of their tips, "
+        "where the level circles come nearest to the centre, are blue and vermillion. Right: the "
         "same unrolled, with the turn of the tips upwards and the direction to the right. Tips of "
         f"the two families pass each other {weave.passings} times in the open kernel."
     )
