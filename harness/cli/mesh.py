@@ -173,8 +173,8 @@ def improve(args: argparse.Namespace) -> int:
         print(json.dumps(record, ensure_ascii=False))
     else:
         print(*_table(better, len(stored.mesh.kept)), sep="\n")
-    for what in lost:
-        print(f"avd: {args.target}: the format does not hold {what}", file=sys.stderr)
+    if lost:
+        print(f"avd: {args.target}: not in the file: {', '.join(lost)}", file=sys.stderr)
     if not better.complete:
         print("avd: the time was over: this is the best mesh so far", file=sys.stderr)
     return 0

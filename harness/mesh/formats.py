@@ -6,6 +6,7 @@ Whatever meshio prints or raises becomes one line; what it wrote is read again a
 from __future__ import annotations
 
 import contextlib
+import copy
 import io
 import tempfile
 from collections.abc import Iterator
@@ -24,6 +25,8 @@ TAGS = ("gmsh:physical", "gmsh:geometrical")
 ENTITIES = "gmsh:dim_tags"
 SETS = "gmsh:bounding_entities"
 """No set of cells, though it is kept among them."""
+PICTURE = "svg"
+"""The one format that meshio writes and does not read."""
 
 
 def read_contents(path: Path) -> Any:
@@ -92,7 +95,7 @@ def _format_of(path: Path) -> str:
     suffix = _suffix(path)
     if suffix not in known:
         raise UserError(
-            f"{path}: not a mesh: no format has the suffix {suffix!r}; "
+            f"{path}: no format of meshes has the suffix {suffix!r}; "
             f"known are {', '.join(sorted(known))}"
         )
     name = str(known[suffix][-1])  # of ".msh" the last is Gmsh
@@ -114,24 +117,70 @@ def written(contents: Any, path: Path) -> tuple[bytes, list[str]]:
     Raises:
         UserError: the format is unknown, or cannot hold the triangles.
     """
+    name = _format_of(path)
+    reason = ""
+    for attempt in (_plain if name == "gmsh" else _without_entities, _triangles_only, _bare):
+        with tempfile.TemporaryDirectory(prefix="avd-mesh-") as folder:
+            scratch = Path(folder, "mesh" + _suffix(path))
+            failed = _write(attempt(contents), scratch, name)
+            if failed is None:
+                alone = Path(folder, "alone", scratch.name)  # formats may use further files
+                alone.parent.mkdir()
+                scratch.rename(alone)
+                return alone.read_bytes(), _lost(contents, alone, path)
+            reason = reason or failed
+    raise UserError(f"{path}: meshio cannot write it" + (f": {reason}" if reason else ""))
+
+
+def _write(contents: Any, scratch: Path, name: str) -> str | None:
+    """Let meshio write a file; None, or what it says if it cannot."""
     import meshio
 
-    name = _format_of(path)
     settings = {}
     if name == "gmsh" and not _is_by_entity(contents):
-        name = "gmsh22"  # tags of every cell
+        name = "gmsh22"  # with the tags of every cell
     if name == "xdmf":
         settings["data_format"] = "XML"  # one file
-    with tempfile.TemporaryDirectory(prefix="avd-mesh-") as folder:
-        scratch = Path(folder, "mesh" + _suffix(path))
-        with _quiet():
-            try:
-                meshio.write(scratch, contents, file_format=name, **settings)
-            except (Exception, SystemExit) as error:  # its writers raise as they stumble
-                reason = " ".join(str(error).split())
-                said = f"meshio cannot write it: {reason}" if reason else "meshio cannot write it"
-                raise UserError(f"{path}: {said}") from None
-        return scratch.read_bytes(), _lost(contents, scratch, path)
+    with _quiet():
+        try:
+            meshio.write(scratch, contents, file_format=name, **settings)
+        except (Exception, SystemExit) as error:  # its writers raise whatever they stumble over
+            return " ".join(str(error).split())
+    return None
+
+
+def _plain(contents: Any) -> Any:
+    """A copy; some writers change what they are given."""
+    changed = copy.copy(contents)
+    changed.point_data = dict(contents.point_data)
+    changed.cell_data, changed.cell_sets = dict(contents.cell_data), dict(contents.cell_sets)
+    return changed
+
+
+def _without_entities(contents: Any) -> Any:
+    """Without what is kept among sets of cells and is none: others than Gmsh stumble over it."""
+    changed = _plain(contents)
+    changed.cell_sets.pop(SETS, None)
+    return changed
+
+
+def _triangles_only(contents: Any) -> Any:
+    """Without lines and vertices as cells, which some formats refuse, and without sets."""
+    kept = [k for k, block in enumerate(contents.cells) if block.type == TRIANGLES]
+    changed = _plain(contents)
+    changed.cells = [contents.cells[k] for k in kept]
+    changed.cell_data = {
+        name: [parts[k] for k in kept] for name, parts in contents.cell_data.items()
+    }
+    changed.cell_sets, changed.point_sets = {}, {}
+    return changed
+
+
+def _bare(contents: Any) -> Any:
+    """The triangles alone."""
+    import meshio
+
+    return meshio.Mesh(contents.points, [(TRIANGLES, triangles_in(contents))])
 
 
 def _is_by_entity(contents: Any) -> bool:
@@ -150,10 +199,12 @@ def _lost(contents: Any, scratch: Path, path: Path) -> list[str]:
     Raises:
         UserError: the triangles do not, or rounding has turned one over.
     """
+    if _format_of(path) == PICTURE:
+        return ["anything but a picture"]
     try:
         again = _read(scratch)
     except UserError:
-        return []  # meshio writes this format only
+        raise UserError(f"{path}: meshio cannot read what it writes in this format") from None
     before, after = triangles_in(contents), triangles_in(again)
     if len(before) != len(after):
         raise UserError(f"{path}: of {len(before)} triangles the format holds {len(after)}")
@@ -168,6 +219,8 @@ def _lost(contents: Any, scratch: Path, path: Path) -> list[str]:
     lost = [f"cells of kind {kind}" for kind in sorted(kinds)]
     for what in ("point_data", "cell_data", "point_sets", "cell_sets"):
         names = getattr(contents, what).keys() - getattr(again, what).keys() - {SETS, ENTITIES}
+        if what == "cell_sets" and any(names <= set(name.split("-")) for name in again.cell_data):
+            continue  # VTK: as data of cells
         lost += [f"{what.replace('_', ' ')} {name}" for name in sorted(names)]
     return lost
 
