@@ -73,7 +73,7 @@ def _try_flips(state: State, ideal: np.ndarray, sweeps: int) -> None:
     left = sweeps * len(state.order)
     arrays = (*state.stars, state.free, state.x, state.y, ideal, TARGET)
     while left > 0 and not state.is_late:
-        visits, moves, flips, done = try_flips(waiting, *arrays, min(left, 4 * len(state.order)))
+        visits, moves, flips, done = try_flips(waiting, *arrays, min(left, len(state.order)))
         state.visits += visits
         state.moves += moves
         state.reconnect(flips)
