@@ -159,6 +159,14 @@ def test_quality_rises_with_every_step(kind, share) -> None:
     assert kept > 2
 
 
+@settings(max_examples=15)
+@given(made=triangulations())
+def test_flips_are_not_below_moves_alone(made) -> None:
+    moved = improve(*made, sweeps=4)
+    flipped = improve(*made, sweeps=4, topology="flip")
+    assert flipped.after.smallest >= moved.after.smallest - 0.1  # close: then the mean decides
+
+
 def test_flips_reach_what_is_asked_and_optimal_meshes_stay() -> None:
     points, triangles = random_mesh(1000)
     for topology in ("flip", "full"):
