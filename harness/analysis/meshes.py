@@ -143,7 +143,7 @@ def answer(found: Sequence[MethodFindings]) -> str:
     for each in found:
         if METHODS[each.method].objective in ("apex", "all") and each.compared:
             pays = each.pays_for
-            said.setdefault(" and ".join(pays) if pays else "nothing", []).append(each.method)
+            said.setdefault(_listed(pays) or "nothing", []).append(each.method)
     if not said:
         return "Does it pay? These rows do not tell."
     parts = [f"for {purposes}: {'; '.join(methods)}" for purposes, methods in said.items()]
@@ -152,6 +152,11 @@ def answer(found: Sequence[MethodFindings]) -> str:
         + ". ".join(part[0].upper() + part[1:] for part in parts)
         + "."
     )
+
+
+def _listed(names: Sequence[str]) -> str:
+    """As a sentence has them: a, b and c."""
+    return " and ".join(filter(None, [", ".join(names[:-1]), *names[-1:]]))
 
 
 def lines(found: Sequence[MethodFindings]) -> list[str]:

@@ -143,6 +143,7 @@ def draw_sweeps(figure: Figure, lines: dict[str, list[list[float]]]) -> None:
             axes.plot(range(1, len(values) + 1), values, style, label=method)
         axes.set_title(names[k], fontsize=8)
         axes.set_xlabel("sweep")
+        axes.set_xscale("log")
         axes.grid(visible=True)
     figure.axes[0].set_ylabel("degrees")
     figure.axes[-1].legend(fontsize=6, loc="lower right")
