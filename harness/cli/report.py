@@ -34,15 +34,7 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def run(args: argparse.Namespace) -> int:
     """Write the report; exit status 0, or 1 (UserError) if there is no study to report on."""
-    from harness.report.combined import is_collection
-    from harness.study.meshes import is_mesh_study
-
-    if is_collection(args.directory):
-        from harness.report.combined import write_collection as report_with_lines
-    elif is_mesh_study(args.directory):
-        from harness.report.mesh_report import write_mesh_report as report_with_lines
-    else:
-        from harness.report import report_with_lines
+    from harness.report import report_with_lines
 
     path, lines = report_with_lines(args.directory)
     print(path)

@@ -24,7 +24,13 @@ def summary_lines(directory: Path) -> list[str]:
 
 
 def report_with_lines(directory: Path) -> tuple[Path, list[str]]:
-    """Both of the above from one analysis."""
+    """Both of the above from one analysis; also of a study of meshes."""
+    from harness.study.mesh_rows import is_mesh_study
+
+    if is_mesh_study(directory):
+        from harness.report.mesh_report import write_mesh_report
+
+        return write_mesh_report(directory)
     from harness.report.build import read, write
 
     study = read(directory)
