@@ -134,7 +134,7 @@ def meet(centres: npt.ArrayLike, radii: npt.ArrayLike) -> Meet:
         raise UserError(f"disc {wrong[0]} (counting from 0) has no finite positive radius")
     _, distinct = np.unique(np.column_stack([z, radius]), axis=0, return_index=True)
     circles = of_discs(z[distinct], radius[distinct])
-    slabs = intersect(len(distinct), _Present(circles))
+    slabs = intersect(len(distinct), Present(circles))
     if not len(slabs.region):
         return Meet(np.empty((0, 2)), slabs.upper, slabs.lower)
     corners = joined(slabs.left, slabs.right.take(np.array([-1])))
@@ -142,7 +142,7 @@ def meet(centres: npt.ArrayLike, radii: npt.ArrayLike) -> Meet:
     return Meet(np.stack([x, y], axis=1), distinct[slabs.upper], distinct[slabs.lower])
 
 
-class _Present:
+class Present:
     """The judge of given circles."""
 
     def __init__(self, circles: Circles) -> None:
