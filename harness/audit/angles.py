@@ -61,9 +61,7 @@ def middle(p: Point, q: Point, part: Fraction = Fraction(1, 2)) -> Point:
     return p[0] + part * (q[0] - p[0]), p[1] + part * (q[1] - p[1])
 
 
-def inner_points(
-    instance: Instance, domain: Domain, rng: random.Random, count: int
-) -> list[Point]:
+def inner_points(instance: Instance, domain: Domain, rng: random.Random, count: int) -> list[Point]:
     """Rational points strictly inside the kernel, or strictly inside the polygon.
 
     Those of the kernel are averages of its corners with random weights.  Those of the polygon are

@@ -76,9 +76,7 @@ def generated(
 # --- lattices ------------------------------------------------------------------------------------
 
 
-def lattice_segments(
-    *ns: int, size: int = 8, admits: Admits | None = None
-) -> Cases:
+def lattice_segments(*ns: int, size: int = 8, admits: Admits | None = None) -> Cases:
     """Disjoint segments with integer end points in [0, size]², n in turn.
 
     ``admits``: a further condition, such as that no two are parallel.
@@ -130,9 +128,7 @@ def _drawn(
                 found = draw(rng, n)
                 if found is not None:
                     break
-            yield Instance(
-                found.kind, found.floats, family=family, params=params, seed=own
-            )
+            yield Instance(found.kind, found.floats, family=family, params=params, seed=own)
 
     return cases
 
@@ -183,13 +179,23 @@ def disjoint_and_unlike(instance: Instance) -> bool:
 
 
 def star_shaped(instance: Instance) -> bool:
-    """Whether an instance is a simple polygon whose kernel has interior."""
+    """Whether an instance is a simple polygon whose kernel has interior, no angle straight."""
     return (
         instance.kind == "polygon"
         and instance.n >= 3
         and is_valid(instance)
         and instance.orientation != 0
+        and _has_corners(instance)
         and kernel(instance).has_interior
+    )
+
+
+def _has_corners(instance: Instance) -> bool:
+    """Whether a polygon turns at every vertex."""
+    v = [instance.exact_vertex(k) for k in range(instance.n)]
+    return all(
+        (q[0] - p[0]) * (r[1] - p[1]) != (q[1] - p[1]) * (r[0] - p[0])
+        for p, q, r in zip(v, v[1:] + v[:1], v[2:] + v[:2], strict=True)
     )
 
 

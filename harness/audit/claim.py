@@ -146,4 +146,6 @@ class Tally:
 
 def as_facts(**facts: Any) -> dict[str, int | float]:
     """Facts as plain numbers."""
-    return {name: value if isinstance(value, int) else float(value) for name, value in facts.items()}
+    return {
+        name: value if isinstance(value, int) else float(value) for name, value in facts.items()
+    }

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+
 from harness.diagram import BUILDERS, build
 from harness.diagram.counts import Counts, Domain
 from harness.diagram.planar_map import PlanarMap
@@ -19,13 +21,13 @@ def diagram(instance: Instance, domain: Domain) -> PlanarMap:
 def certificates(instance: Instance, domain: Domain) -> dict[str, Counts]:
     """The counts of an instance by every builder that can be asked, checked against each other.
 
-    Each map also passes the checks that every diagram must satisfy.  Instances too large for the
-    reference builder have those of the other only.
+    So are the numbers of cells of each segment, and each map passes the checks that every diagram
+    must satisfy.  Instances too large for the reference builder have the other's counts only.
 
     Raises:
         ArithmeticError: the builders disagree, or one does not vouch for its counts.
     """
-    found = {}
+    found, contents = {}, set()
     for builder in BUILDERS:
         if builder == "reference" and instance.n > MOST_FOR_REFERENCE[domain]:
             continue
@@ -34,12 +36,14 @@ def certificates(instance: Instance, domain: Domain) -> dict[str, Counts]:
         if not made.certified:
             raise ArithmeticError(f"the {builder} builder does not vouch for {instance.label}")
         found[builder] = made.counts
-    if len({_content(counts) for counts in found.values()}) > 1:
+        contents.add(_content(made))
+    if len(contents) > 1:
         raise ArithmeticError(f"the builders disagree about {instance.label}")
     return found
 
 
-def _content(counts: Counts) -> str:
+def _content(made: PlanarMap) -> str:
     """Everything that is counted, without the builder's name."""
-    record = counts.as_dict()
-    return repr(sorted((name, value) for name, value in record.items() if name != "builder"))
+    record = {**made.counts.as_dict(), "builder": ""}
+    owners = Counter(cell.segment for cell in made.cells)
+    return repr((sorted(record.items()), sorted(owners.items())))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Sequence
-from itertools import combinations
+from itertools import combinations, pairwise
 from typing import Any
 
 import numpy as np
@@ -66,7 +66,7 @@ class Counting:
 
 
 def discs_of(instance: Instance) -> tuple[Floats, Floats]:
-    """Centres (n, 2) and radii (n,): the discs of a polygon's edges a little above the peak's level.
+    """Centres (n, 2) and radii (n,): discs of a polygon's edges a little above the peak's level.
 
     Their intersection has interior; the origin is the peak.
     """
@@ -87,7 +87,7 @@ def corners(found: Meet) -> Counter[tuple[int, int]]:
         return Counter()
     pairs = [(upper[0], lower[0]), (upper[-1], lower[-1])]
     for chain in (upper, lower):
-        pairs += list(zip(chain, chain[1:], strict=False))
+        pairs += pairwise(chain)
     return Counter((min(p), max(p)) for p in pairs if p[0] != p[1])
 
 

@@ -24,9 +24,10 @@ from flint import arb, ctx
 from harness.audit import cases
 from harness.audit.claim import Claim, Finding, as_facts
 from harness.diagram.counts import Domain
-from harness.geometry.exact import point
+from harness.geometry.exact import ExactPoint, point
 from harness.geometry.instance import Instance
 from harness.peak.rational import Edge
+from harness.peak.rational import forms as exact_forms
 from harness.peak.tangency import tangencies
 
 Ball = Any
@@ -99,9 +100,7 @@ def _of_pair(
         if touches is None or verdicts is None or None in verdicts:
             continue
         return [
-            Extremum(
-                pair, (float(x.mid()), float(y.mid())), float(c.mid()), verdict > 0, sign > 0
-            )
+            Extremum(pair, (float(x.mid()), float(y.mid())), float(c.mid()), verdict > 0, sign > 0)
             for (c, x, y), verdict in zip(touches, verdicts, strict=True)
             if verdict
         ], 0
@@ -119,6 +118,8 @@ def _kind(
 ) -> int | None:
     """1 for a minimum on a Voronoi edge, −1 for a maximum, 0 for neither; None: not decided."""
     c, x, y = touch
+    if _is_endpoint(one, other, x, y) or _is_endpoint(other, one, x, y):
+        return 0  # a node, at which edges end
     on_left = [_forms(s, x, y)[1] for s in (one, other)]
     if any(area < 0 for area in on_left):
         return 0
@@ -139,6 +140,25 @@ def _kind(
     if not is_sure or not (slope > 0 or slope < 0):
         return None
     return 1 if slope > 0 else -1
+
+
+def _is_endpoint(one: Edge, other: Edge, x: Ball, y: Ball) -> bool:
+    """Whether the circles touch in an end point of ``one``; if balls allow it, exactly."""
+    for e in one:
+        if not (arb(x - e[0]).contains(0) and arb(y - e[1]).contains(0)):
+            continue
+        q, area = exact_forms(other, e)
+        if area > 0:
+            (px, py), (qx, qy) = (_centre(s, q / area) for s in (one, other))
+            if (px - e[0]) * (qy - e[1]) == (py - e[1]) * (qx - e[0]):
+                return True
+    return False
+
+
+def _centre(edge: Edge, c: Any) -> ExactPoint:
+    """The centre of an edge's circle of level c."""
+    mx, my, hx, hy, _ = _circle(edge)
+    return mx + c * hx, my + c * hy
 
 
 def _slope(one: Edge, other: Edge, sign: int, c: Ball) -> Ball:

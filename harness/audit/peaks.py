@@ -254,10 +254,10 @@ CLAIMS = (
         title="Lemma 3, kernel",
         quote="a peak lies on some Voronoi edge",
         reading=(
-            "The point of the closed kernel of a star-shaped polygon from which the smallest visual "
-            "angle of the edges is greatest, if there is one, lies on a Voronoi edge or vertex. (If "
-            "the supremum is approached at a vertex of the polygon, where no angle is defined, "
-            "there is no peak; such polygons are counted apart.)"
+            "The point of the closed kernel of a star-shaped polygon from which the smallest "
+            "visual angle of the edges is greatest, if there is one, lies on a Voronoi edge or "
+            "vertex. (If the supremum is approached at a vertex of the polygon, where no angle is "
+            "defined, there is no peak; such polygons are counted apart.)"
         ),
         failure="a peak with a single edge of the optimal angle, or off all edges of the diagram",
         arithmetic="ties at the optimum by algebraic numbers; " + PROVEN + "; certified diagrams",
@@ -276,13 +276,13 @@ CLAIMS = (
         quote="Given a set S of line segments in the plane, a peak lies on some Voronoi edge",
         reading=(
             "For n ≥ 2 disjoint segments no point of the plane sees them under a least angle that "
-            "is greater than the supremum over all Voronoi edges. (With n = 1 there is no edge, and "
-            "with equal maxima no peak in the paper's sense.)"
+            "is greater than the supremum over all Voronoi edges. (With n = 1 there is no edge, "
+            "and with equal maxima no peak in the paper's sense.)"
         ),
         failure="a point whose least angle exceeds that supremum by more than 10⁻⁹ in cot θ",
         arithmetic=(
-            "the point is found in doubles and judged exactly; the range of cot θ over each edge is "
-            "certified, rounded to doubles"
+            "the point is found in doubles and judged exactly; the range of cot θ over each edge "
+            "is certified, rounded to doubles"
         ),
         limits="A search of the plane may miss a point; the lemma's proof does not.",
         cases=cases.together(
@@ -295,7 +295,10 @@ CLAIMS = (
     Claim(
         name="not-a-vertex",
         title="The optimum need not be a Voronoi vertex",
-        quote="such an optimal point should be found at some Voronoi vertex. Unfortunately, it is not the case.",
+        quote=(
+            "such an optimal point should be found at some Voronoi vertex. Unfortunately, it is "
+            "not the case."
+        ),
         reading=(
             "There is a star-shaped polygon in whose kernel there are Voronoi vertices, the peak "
             "exists, and every vertex sees a smaller least angle than the peak."

@@ -93,8 +93,8 @@ CLAIMS = (
         title="Lemma 2",
         quote=QUOTE,
         reading=(
-            "For n ≥ 2 disjoint segments in the plane, no two of them parallel, the region of every "
-            "segment consists of at least two cells. A cell is a connected component of the "
+            "For n ≥ 2 disjoint segments in the plane, no two of them parallel, the region of "
+            "every segment consists of at least two cells. A cell is a connected component of the "
             "interior of the closure of a region, so that single curves of ties split nothing. "
             "These hypotheses are those of the proof, in favour of the lemma: parallel, collinear "
             "and touching segments are left out."
@@ -110,16 +110,18 @@ CLAIMS = (
     Claim(
         name="lemma-2-proof",
         title="Lemma 2, in the case of its proof",
-        quote="the Voronoi region of s_i is partitioned into at least two parts by extensions of s_j",
+        quote=(
+            "the Voronoi region of s_i is partitioned into at least two parts by extensions of s_j"
+        ),
         reading=(
-            "Under the same hypotheses: if the lines of two segments meet outside of both, each of "
-            "the two regions consists of at least two cells."
+            "Under the same hypotheses: if the lines of two segments meet outside of both, each "
+            "of the two regions consists of at least two cells."
         ),
         failure="such a segment that owns a single cell; one instance refutes the proof",
         arithmetic=ARITHMETIC + "; where lines meet, by rational arithmetic",
         limits=(
-            "A failure is final. (The extensions of s_j do not cut the plane apart: V(s_i) may pass "
-            "through s_j itself, where s_j is seen under π.)"
+            "A failure is final. (The extensions of s_j do not cut the plane apart: V(s_i) may "
+            "pass through s_j itself, where s_j is seen under π.)"
         ),
         cases=SOME,
         check=check_case_of_proof,
@@ -131,8 +133,8 @@ CLAIMS = (
         title="Lemma 2, repaired",
         quote=QUOTE,
         reading=(
-            "Under the same hypotheses: if the lines of two segments meet outside of both, at least "
-            "one of the two regions consists of two cells or more."
+            "Under the same hypotheses: if the lines of two segments meet outside of both, at "
+            "least one of the two regions consists of two cells or more."
         ),
         failure="two such segments that own a single cell each",
         arithmetic=ARITHMETIC + "; where lines meet, by rational arithmetic",
