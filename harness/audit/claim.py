@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Literal, Protocol
+from typing import Any, Literal
 
 from harness.diagram.counts import Domain
 from harness.geometry.instance import Instance
@@ -54,7 +54,8 @@ class Row:
 class Series:
     """How a count of one family grows: the sizes, the counts (the largest at each size), a verdict.
 
-    ``verdict`` is that of :mod:`harness.analysis`; ``ratios`` maps a title such as "vertices/n²" to
+    ``verdict`` is that of :mod:`harness.analysis`; ``is_single``: whether it leaves one model.
+    ``ratios`` maps a title such as "vertices/n²" to
     one number for each size.
     """
 
@@ -64,15 +65,12 @@ class Series:
     counts: tuple[int, ...]
     ratios: Mapping[str, tuple[float, ...]]
     verdict: str
+    is_single: bool
     sentence: str
 
 
-class Cases(Protocol):
-    """A source of instances."""
-
-    def __call__(self, count: int, seed: int) -> Iterator[Instance]:
-        """About ``count`` instances, the same for the same arguments."""
-        ...
+Cases = Callable[[int, int], Iterator[Instance]]
+"""A source of instances: about ``count`` of them, the same for the same (count, seed)."""
 
 
 @dataclass(frozen=True)
@@ -136,6 +134,12 @@ class Tally:
                 f"shown by {self.holds} of {self.tried}"
                 if self.holds
                 else f"no example among {self.tried} tried"
+            )
+        elif kind == "growth":
+            words = (
+                f"above the bound on {self.fails} of {self.tried} tried"
+                if self.fails
+                else f"within the bound on all {self.tried} tried"
             )
         elif self.fails:
             words = f"fails on {self.fails} of {self.tried}"

@@ -62,5 +62,6 @@ def _series(
             for title, ratio in ratios.items()
         },
         verdict=verdict.label,
+        is_single=verdict.kind == "single",
         sentence=verdict.sentence,
     )

@@ -8,7 +8,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from harness.audit.claim import OUTCOMES, Claim, Finding, Row, Tally
+from harness.audit.claim import OUTCOMES, Claim, Finding, Row, Series, Tally
 from harness.audit.diagrams import certificates
 from harness.audit.pool import Workers, judged
 from harness.audit.shrink import shrink, simplicity
@@ -74,17 +74,27 @@ def try_claim(
     tally = Tally.of(rows)
     sought = [i for i, f in zip(instances, found, strict=True) if f.outcome == claim.sought]
     example = _smallest(claim, sought)
+    series = claim.series(rows) if claim.series else []
     record: Record = {
         "claim": claim.name,
         "count": count,
         "seed": seed,
-        "verdict": tally.verdict(claim.kind),
+        "verdict": "; ".join([tally.verdict(claim.kind), *fits(series)]),
         "tally": asdict(tally),
         "families": _by_family(rows),
         "example": None if example is None else _example(claim, example),
-        "series": [asdict(series) for series in claim.series(rows)] if claim.series else [],
+        "series": [asdict(one) for one in series],
     }
     return record, rows, example
+
+
+def fits(series: Sequence[Series]) -> list[str]:
+    """Which families' counts leave a single growth model, as "counts fit n² (zigzag)"."""
+    families: dict[str, list[str]] = {}
+    for one in series:
+        if one.is_single:
+            families.setdefault(one.verdict, []).append(one.family.partition(" ")[0])
+    return [f"counts fit {label} ({', '.join(names)})" for label, names in families.items()]
 
 
 def _row(claim: Claim, instance: Instance, finding: Finding) -> Row:

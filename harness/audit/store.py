@@ -140,7 +140,7 @@ def _row(record: dict[str, str], where: str) -> Row:
             int(record["n"]),
             record["params"],
             int(record["seed"]),
-            outcome,  # type: ignore[arg-type]  # checked above
+            outcome,
             record["message"],
             json.loads(record["facts"]),
         )

@@ -24,10 +24,13 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def run(args: argparse.Namespace) -> int:
     """Write the report; exit status 0, or 1 (UserError) if there is no study to report on."""
+    from harness.audit.store import is_audit
     from harness.study.meshes import is_mesh_study
 
     if is_mesh_study(args.directory):
         from harness.report.mesh_report import write_mesh_report as report_with_lines
+    elif is_audit(args.directory):
+        from harness.report.audit_page import write_audit_page as report_with_lines
     else:
         from harness.report import report_with_lines
 

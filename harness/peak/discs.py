@@ -146,20 +146,24 @@ class Present:
     """The judge of given circles."""
 
     def __init__(self, circles: Circles) -> None:
+        """``circles``: all of them, by number."""
         self.circles = circles
 
     def _x(self, v: Vertices) -> Floats:
         return crossing(self.circles.take(v.one), self.circles.take(v.other), v.side)[0]
 
     def cross(self, one: Ints, other: Ints) -> Booleans:
+        """See :class:`Judge`."""
         return crossing_margin(self.circles.take(one), self.circles.take(other)) > 0
 
     def is_left(self, v: Vertices, w: Vertices) -> Booleans:
+        """See :class:`Judge`."""
         return self._x(v) < self._x(w)
 
     def is_below(
         self, v: Vertices, w: Vertices, one: Ints, other: Ints, halves: tuple[bool, bool]
     ) -> Booleans:
+        """See :class:`Judge`."""
         x = (self._x(v) + self._x(w)) / 2
         first, second = (
             ordinate(self.circles.take(k), x, np.full(len(x), half))
