@@ -40,15 +40,22 @@ def families(*wanted: tuple[str, int, Mapping[str, Scalar]]) -> Cases:
 
 
 def sizes(
-    names: Mapping[str, tuple[int, ...]], params: Mapping[str, Mapping[str, Scalar]] | None = None
+    names: Mapping[str, tuple[int, ...]],
+    params: Mapping[str, Mapping[str, Scalar]] | None = None,
+    replicates: int = 1,
 ) -> Cases:
-    """Each family at each of its sizes, one instance each, whatever the count: for growth."""
+    """Each family at each of its sizes, ``replicates`` of each, whatever the count: for growth.
+
+    ``names``: sizes by family; "family:anything" is another entry of the same family, with the
+    ``params`` of that name.
+    """
 
     def cases(_count: int, seed: int) -> Iterator[Instance]:
         for name, ns in names.items():
             for n in ns:
                 family = name.partition(":")[0]
-                yield generated(family, n, (params or {}).get(name, {}), seed, 0)
+                for k in range(replicates):
+                    yield generated(family, n, (params or {}).get(name, {}), seed, k)
 
     return cases
 
@@ -170,12 +177,17 @@ def disjoint(instance: Instance) -> bool:
     )
 
 
-def disjoint_and_unlike(instance: Instance) -> bool:
-    """Disjoint, and no two parallel or collinear: the position in which the paper argues."""
+def generic(instance: Instance) -> bool:
+    """Disjoint, no two parallel, no end point on another's line: as the paper's proofs assume."""
     if not disjoint(instance):
         return False
-    steps = [(b[0] - a[0], b[1] - a[1]) for a, b in instance.rational_segments()]
-    return all(p[0] * q[1] != p[1] * q[0] for p, q in combinations(steps, 2))
+    for (a, b), (c, d) in combinations(instance.rational_segments(), 2):
+        s, t = (b[0] - a[0], b[1] - a[1]), (d[0] - c[0], d[1] - c[1])
+        if s[0] * t[1] == s[1] * t[0]:
+            return False
+        if any(_is_on_line(p, a, b) for p in (c, d)) or any(_is_on_line(p, c, d) for p in (a, b)):
+            return False
+    return True
 
 
 def star_shaped(instance: Instance) -> bool:
@@ -204,8 +216,13 @@ def _touch(s: Any, t: Any) -> bool:
     return any(_on(p, *t) for p in s) or any(_on(p, *s) for p in t)
 
 
+def _is_on_line(p: Any, a: Any, b: Any) -> bool:
+    """Whether a point is on the line through two others."""
+    return bool((b[0] - a[0]) * (p[1] - a[1]) == (b[1] - a[1]) * (p[0] - a[0]))
+
+
 def _on(p: Any, a: Any, b: Any) -> bool:
     """Whether a point is on a closed segment."""
-    if (b[0] - a[0]) * (p[1] - a[1]) != (b[1] - a[1]) * (p[0] - a[0]):
+    if not _is_on_line(p, a, b):
         return False
     return bool((a[0] - p[0]) * (b[0] - p[0]) + (a[1] - p[1]) * (b[1] - p[1]) <= 0)

@@ -77,7 +77,7 @@ Cases = Callable[[int, int], Iterator[Instance]]
 class Claim:
     """One statement in one reading.
 
-    ``quote``: the paper's words; ``reading``: what is tested, in words of our own; ``failure``:
+    ``gloss``: what it says, in a few words; ``quote``: the paper's words; ``reading``: what is tested, in words of our own; ``failure``:
     what counts against it; ``arithmetic``: what decides; ``limits``: what the finite experiment
     shows, and what it cannot.  ``check`` is a pure function of the instance.  ``domain``: that of
     the diagram the claim is about, which both builders certify for the example that is shown, or
@@ -87,6 +87,7 @@ class Claim:
 
     name: str
     title: str
+    gloss: str
     quote: str
     reading: str
     failure: str

@@ -113,7 +113,7 @@ def check_cubic(instance: Instance) -> Finding:
 
 def check_one_cubic(instance: Instance) -> Finding:
     """All edges of one pair lie on one and the same cubic."""
-    if instance.n < 2 or instance.kind != "segments" or not cases.disjoint_and_unlike(instance):
+    if instance.n < 2 or instance.kind != "segments" or not cases.generic(instance):
         return Finding("outside")
     segments = instance.rational_segments()
     found = diagram(instance, "plane")
@@ -146,6 +146,7 @@ CLAIMS = (
     Claim(
         name="lemma-1",
         title="Lemma 1",
+        gloss="edges lie on curves of degree at most three",
         quote=QUOTE,
         reading=(
             "Every Voronoi edge lies on the zeros of one polynomial of degree at most three that "
@@ -174,6 +175,7 @@ CLAIMS = (
     Claim(
         name="lemma-1-one-curve",
         title="Lemma 1, one curve for a pair",
+        gloss="equation (5) describes all edges of a pair",
         quote=(
             "y{(x − a)² + (y − b)² − l²} − l{(x − a) sin φ − (y − b) cos φ}(x² + y² − 1) = 0 (5). "
             "This completes the proof of the lemma."
@@ -182,13 +184,13 @@ CLAIMS = (
             "One such polynomial, equation (5), describes all edges of a pair of segments. (The "
             "proof takes one circle for each segment and level where there are two; which of the "
             "two cubics (5) is depends on which of its directions, φ or φ + π, the second segment "
-            "is given.)"
+            "is given.) Disjoint segments, no two parallel, no end point on another's line."
         ),
         failure="a pair with edges on both of its cubics; one instance refutes this reading",
         arithmetic="as for Lemma 1",
         limits="A failure is final. It concerns the proof's equation; the lemma itself stands.",
         cases=cases.together(
-            (cases.lattice_segments(2, 3, admits=cases.disjoint_and_unlike), 0.7),
+            (cases.lattice_segments(2, 3, admits=cases.generic), 0.7),
             (cases.families(("segments", 4, {})), 0.3),
         ),
         check=check_one_cubic,

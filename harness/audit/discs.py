@@ -185,6 +185,7 @@ CLAIMS = (
     Claim(
         name="lemma-6",
         title="Lemma 6",
+        gloss="n discs intersected in O(log² n) parallel steps",
         quote=(
             "Given a set of n circles, the above parallel algorithm for finding their intersection "
             "is implemented in O(log² n) time using n processors."

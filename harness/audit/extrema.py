@@ -215,7 +215,7 @@ def check_unimodal(instance: Instance, domain: Domain) -> Finding:
 
 def check_plane(instance: Instance) -> Finding:
     """Lemma 4 for disjoint segments in the plane."""
-    if instance.kind != "segments" or instance.n < 2 or not cases.disjoint_and_unlike(instance):
+    if instance.kind != "segments" or instance.n < 2 or not cases.generic(instance):
         return Finding("outside")
     return check_unimodal(instance, "plane")
 
@@ -254,13 +254,15 @@ CLAIMS = (
     Claim(
         name="lemma-4-plane",
         title="Lemma 4, unimodal, plane",
+        gloss="θ has no minimum inside an edge",
         quote=QUOTE,
-        reading=UNIMODAL + " For disjoint segments in the plane, no two of them parallel.",
+        reading=UNIMODAL + " For disjoint segments in the plane, no two of them "
+        "parallel, no end point on the line of another.",
         failure=FAILURE,
         arithmetic=ARITHMETIC,
         limits="A failure is final. The share of failures is that of these families, no more.",
         cases=cases.together(
-            (cases.lattice_segments(2, 3, 4, admits=cases.disjoint_and_unlike), 0.75),
+            (cases.lattice_segments(2, 3, 4, admits=cases.generic), 0.75),
             (cases.families(("segments", 4, {}), ("segments", 8, {})), 0.25),
         ),
         check=check_plane,
@@ -270,6 +272,7 @@ CLAIMS = (
     Claim(
         name="lemma-4-kernel",
         title="Lemma 4, unimodal, kernel",
+        gloss="θ has no minimum inside an edge",
         quote=QUOTE,
         reading=UNIMODAL + " For the edges of a star-shaped polygon, inside its kernel.",
         failure=FAILURE,
@@ -296,6 +299,7 @@ CLAIMS = (
     Claim(
         name="lemma-4-convex",
         title="Lemma 4, convex to the letter",
+        gloss="θ is a convex function on each edge",
         quote=QUOTE,
         reading=(
             "θ_min is a convex function of the position along a Voronoi edge, in any "

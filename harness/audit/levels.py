@@ -135,6 +135,7 @@ CLAIMS = (
     Claim(
         name="convex-levels",
         title="Convex level sets, kernel",
+        gloss="{θ_min ≥ α} is convex in the kernel",
         quote=CONVEX,
         reading=(
             "For any two points of the kernel of a star-shaped polygon, every point between them "
@@ -153,6 +154,7 @@ CLAIMS = (
     Claim(
         name="convex-levels-interior",
         title="Convex level sets, interior",
+        gloss="{θ_min ≥ α} is convex in the polygon",
         quote=INTERIOR,
         reading=(
             "The same in the whole interior of a star-shaped polygon, for points whose connecting "
@@ -170,6 +172,7 @@ CLAIMS = (
     Claim(
         name="single-circle",
         title="Single circle, kernel",
+        gloss="{θ ≥ α} is a disc in the kernel",
         quote=CIRCLE,
         reading=(
             "For every edge s of a star-shaped polygon and every angle α there is one disc, with "
@@ -189,6 +192,7 @@ CLAIMS = (
     Claim(
         name="single-circle-interior",
         title="Single circle, interior",
+        gloss="{θ ≥ α} is a disc in the polygon",
         quote=INTERIOR,
         reading="The same for the points of the whole interior of the polygon.",
         failure="a point of the interior that is on the wrong side of the circle",

@@ -252,6 +252,7 @@ CLAIMS = (
     Claim(
         name="lemma-3",
         title="Lemma 3, kernel",
+        gloss="a peak is on a Voronoi edge",
         quote="a peak lies on some Voronoi edge",
         reading=(
             "The point of the closed kernel of a star-shaped polygon from which the smallest "
@@ -273,6 +274,7 @@ CLAIMS = (
     Claim(
         name="lemma-3-plane",
         title="Lemma 3, plane",
+        gloss="no point sees more than the best of the edges",
         quote="Given a set S of line segments in the plane, a peak lies on some Voronoi edge",
         reading=(
             "For n ≥ 2 disjoint segments no point of the plane sees them under a least angle that "
@@ -295,6 +297,7 @@ CLAIMS = (
     Claim(
         name="not-a-vertex",
         title="The optimum need not be a Voronoi vertex",
+        gloss="a peak that no Voronoi vertex attains",
         quote=(
             "such an optimal point should be found at some Voronoi vertex. Unfortunately, it is "
             "not the case."
@@ -315,6 +318,7 @@ CLAIMS = (
     Claim(
         name="naive-algorithm",
         title="Vertices and edges suffice",
+        gloss="examining vertices and edges finds the peak",
         quote="it suffices to examine all Voronoi vertices and edges to find an optimal point",
         reading=(
             "The best of all Voronoi vertices, of all touching points of circles on Voronoi edges, "
@@ -331,6 +335,7 @@ CLAIMS = (
     Claim(
         name="theorem-7",
         title="Theorem 7",
+        gloss="a peak in O(n log² n) operations",
         quote="a point (peak) in its kernel … can be found in O(n log² n) time",
         reading=(
             "Parametric search over the parallel intersection of discs finds the peak that "
@@ -365,6 +370,7 @@ CLAIMS = (
     Claim(
         name="two-segments",
         title="Two segments: max–min and min–max",
+        gloss="max–min is min–max for n = 2",
         quote=(
             "If we have only two line segments, a point maximizing the smallest visual angle also "
             "minimizes the largest visual angle."

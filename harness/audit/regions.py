@@ -29,7 +29,7 @@ def lines_meet_outside(s: Segment, t: Segment) -> bool:
 
 def check_every_region(instance: Instance) -> Finding:
     """Every region has at least two cells."""
-    if instance.kind != "segments" or instance.n < 2 or not cases.disjoint_and_unlike(instance):
+    if instance.kind != "segments" or instance.n < 2 or not cases.generic(instance):
         return Finding("outside")
     cells = cells_by_segment(instance)
     whole = [k for k in range(instance.n) if cells[k] < 2]
@@ -51,7 +51,7 @@ def meeting_pairs(instance: Instance) -> list[tuple[int, int]]:
 
 def check_case_of_proof(instance: Instance) -> Finding:
     """Both regions of two segments whose lines meet outside both have at least two cells."""
-    if instance.kind != "segments" or instance.n < 2 or not cases.disjoint_and_unlike(instance):
+    if instance.kind != "segments" or instance.n < 2 or not cases.generic(instance):
         return Finding("outside")
     partnered = sorted({k for pair in meeting_pairs(instance) for k in pair})
     if not partnered:
@@ -66,7 +66,7 @@ def check_case_of_proof(instance: Instance) -> Finding:
 
 def check_one_of_two(instance: Instance) -> Finding:
     """One of the regions of two segments whose lines meet outside both has at least two cells."""
-    if instance.kind != "segments" or instance.n < 2 or not cases.disjoint_and_unlike(instance):
+    if instance.kind != "segments" or instance.n < 2 or not cases.generic(instance):
         return Finding("outside")
     pairs = meeting_pairs(instance)
     if not pairs:
@@ -83,7 +83,7 @@ QUOTE = "Each Voronoi region is partitioned into at least two connected parts if
 ARITHMETIC = "certified diagrams: every decision of the builder is exact"
 
 SOME = cases.together(
-    (cases.lattice_segments(2, 3, 4, admits=cases.disjoint_and_unlike), 0.7),
+    (cases.lattice_segments(2, 3, 4, admits=cases.generic), 0.7),
     (cases.families(("segments", 3, {}), ("segments", 6, {})), 0.3),
 )
 
@@ -91,13 +91,14 @@ CLAIMS = (
     Claim(
         name="lemma-2",
         title="Lemma 2",
+        gloss="every region of the plane falls into two cells or more",
         quote=QUOTE,
         reading=(
-            "For n ≥ 2 disjoint segments in the plane, no two of them parallel, the region of "
-            "every segment consists of at least two cells. A cell is a connected component of the "
+            "For n ≥ 2 disjoint segments in the plane, no two of them parallel and no end point "
+            "on the line of another segment, the region of every segment consists of at least two cells. A cell is a connected component of the "
             "interior of the closure of a region, so that single curves of ties split nothing. "
-            "These hypotheses are those of the proof, in favour of the lemma: parallel, collinear "
-            "and touching segments are left out."
+            "These hypotheses favour the lemma: parallel, collinear and touching segments are "
+            "left out."
         ),
         failure="a segment that owns fewer than two cells; one instance refutes the lemma",
         arithmetic=ARITHMETIC,
@@ -110,6 +111,7 @@ CLAIMS = (
     Claim(
         name="lemma-2-proof",
         title="Lemma 2, in the case of its proof",
+        gloss="so it does if two lines meet outside both segments",
         quote=(
             "the Voronoi region of s_i is partitioned into at least two parts by extensions of s_j"
         ),
@@ -131,6 +133,7 @@ CLAIMS = (
     Claim(
         name="lemma-2-repaired",
         title="Lemma 2, repaired",
+        gloss="then one of the two regions does",
         quote=QUOTE,
         reading=(
             "Under the same hypotheses: if the lines of two segments meet outside of both, at "

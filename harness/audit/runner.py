@@ -94,7 +94,10 @@ def fits(series: Sequence[Series]) -> list[str]:
     for one in series:
         if one.is_single:
             families.setdefault(one.verdict, []).append(one.family.partition(" ")[0])
-    return [f"counts fit {label} ({', '.join(names)})" for label, names in families.items()]
+    return [
+        f"counts fit {label} ({', '.join(dict.fromkeys(names))})"
+        for label, names in families.items()
+    ]
 
 
 def _row(claim: Claim, instance: Instance, finding: Finding) -> Row:

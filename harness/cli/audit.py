@@ -70,7 +70,7 @@ def run(args: argparse.Namespace) -> int:
     if args.list:
         width = max(len(claim.name) for claim in claims)
         for claim in claims:
-            print(f"{claim.name:{width}}  {claim.title}")
+            print(f"{claim.name:{width}}  {claim.title}: {claim.gloss}")
         return 0
     if sys.platform == "win32":
         raise UserError("avd audit needs a POSIX system (Linux, macOS): it locks its directory")

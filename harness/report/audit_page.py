@@ -24,7 +24,6 @@ from harness.report.style import inline
 Record = Mapping[str, Any]
 
 PAGE = "report.html"
-KINDS = {"for all": "for all", "there is": "there is", "growth": "growth"}
 
 
 def write_audit_page(directory: Path) -> tuple[Path, list[str]]:
@@ -85,6 +84,7 @@ def _view(claim: Claim, record: Record, directory: Path, figures: dict[str, str]
     return {
         "name": claim.name,
         "title": claim.title,
+        "gloss": claim.gloss,
         "quote": claim.quote,
         "texts": [
             ("Reading tested", claim.reading),
@@ -92,7 +92,7 @@ def _view(claim: Claim, record: Record, directory: Path, figures: dict[str, str]
             ("What decides", claim.arithmetic),
             ("What this shows", claim.limits),
         ],
-        "kind": KINDS[claim.kind],
+        "kind": claim.kind,
         "verdict": record["verdict"],
         "tone": tone(claim, record),
         "tried": tally["holds"] + tally["fails"],
