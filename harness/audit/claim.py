@@ -77,12 +77,13 @@ Cases = Callable[[int, int], Iterator[Instance]]
 class Claim:
     """One statement in one reading.
 
-    ``gloss``: what it says, in a few words; ``quote``: the paper's words; ``reading``: what is tested, in words of our own; ``failure``:
-    what counts against it; ``arithmetic``: what decides; ``limits``: what the finite experiment
-    shows, and what it cannot.  ``check`` is a pure function of the instance.  ``domain``: that of
-    the diagram the claim is about, which both builders certify for the example that is shown, or
-    None if it is about no diagram.  ``count``: how many instances by default.  ``series``: how
-    counts grow, from the rows.  ``shrink``: whether the example is made as small as possible.
+    ``gloss``: what it says, in a few words; ``quote``: the paper's words; ``reading``: what is
+    tested, in words of our own; ``failure``: what counts against it; ``arithmetic``: what decides;
+    ``limits``: what the finite experiment shows, and what it cannot.  ``check`` is a pure function
+    of the instance.  ``domain``: that of the diagram the claim is about, which both builders
+    certify for the example that is shown, or None if it is about no diagram.  ``count``: how many
+    instances by default.  ``series``: how counts grow, from the rows.  ``shrink``: whether the
+    example is made as small as possible.
     """
 
     name: str

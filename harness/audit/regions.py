@@ -95,10 +95,10 @@ CLAIMS = (
         quote=QUOTE,
         reading=(
             "For n ≥ 2 disjoint segments in the plane, no two of them parallel and no end point "
-            "on the line of another segment, the region of every segment consists of at least two cells. A cell is a connected component of the "
-            "interior of the closure of a region, so that single curves of ties split nothing. "
-            "These hypotheses favour the lemma: parallel, collinear and touching segments are "
-            "left out."
+            "on the line of another segment, the region of every segment consists of at least "
+            "two cells. A cell is a connected component of the interior of the closure of a "
+            "region, so that single curves of ties split nothing. These hypotheses favour the "
+            "lemma: parallel, collinear and touching segments are left out."
         ),
         failure="a segment that owns fewer than two cells; one instance refutes the lemma",
         arithmetic=ARITHMETIC,

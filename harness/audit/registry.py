@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from harness.audit import complexity, cubics, discs, extrema, levels, peaks, regions
+from harness.audit import complexity, cubics, discs, extrema, levels, peaks, plane, regions
 from harness.audit.claim import Claim
 from harness.errors import UserError, suggestion
 
@@ -35,7 +35,7 @@ _ORDER = (
 )
 _ALL = {
     claim.name: claim
-    for module in (cubics, regions, peaks, extrema, complexity, levels, discs)
+    for module in (cubics, regions, peaks, plane, extrema, complexity, levels, discs)
     for claim in module.CLAIMS
 }
 

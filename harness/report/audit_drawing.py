@@ -92,7 +92,7 @@ def _edge_through(found: PlanarMap, mark: Floats) -> tuple[Edge, Floats] | None:
     size = float(np.ptp(shape, axis=0).max())
     best, nearest = None, 1e-3 * size
     for edge in found.edges:
-        points = edge.polyline(1e-4 * size)
+        points = _denser(edge.polyline(1e-5 * size))
         gap = float(np.hypot(*(points - mark).T).min())
         if gap < nearest:
             best, nearest = (edge, points), gap
@@ -102,6 +102,13 @@ def _edge_through(found: PlanarMap, mark: Floats) -> tuple[Edge, Floats] | None:
     near = np.hypot(*(points - mark).T) <= 3 * size  # an unbounded edge goes on for ever
     points = points[near]
     return edge, points[:: max(1, len(points) // 400)]
+
+
+def _denser(points: Floats) -> Floats:
+    """A polyline with 20 points for each of its own."""
+    place = np.arange(len(points), dtype=np.float64)
+    finer = np.linspace(0.0, len(points) - 1.0, 20 * len(points))
+    return np.column_stack([np.interp(finer, place, points[:, k]) for k in (0, 1)])
 
 
 def growth_svg(series: Sequence[Record]) -> str:
