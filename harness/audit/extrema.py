@@ -294,7 +294,7 @@ CLAIMS = (
         ),
         check=check_kernel,
         domain="kernel",
-        count=600,
+        count=1200,
     ),
     Claim(
         name="lemma-4-convex",

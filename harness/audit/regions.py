@@ -83,8 +83,8 @@ QUOTE = "Each Voronoi region is partitioned into at least two connected parts if
 ARITHMETIC = "certified diagrams: every decision of the builder is exact"
 
 SOME = cases.together(
-    (cases.lattice_segments(2, 3, 4, admits=cases.generic), 0.7),
-    (cases.families(("segments", 3, {}), ("segments", 6, {})), 0.3),
+    (cases.lattice_segments(2, 3, 4, admits=cases.generic), 0.6),
+    (cases.families(*(("segments", n, {}) for n in (2, 3, 4, 6, 8))), 0.4),
 )
 
 CLAIMS = (
@@ -106,7 +106,7 @@ CLAIMS = (
         cases=SOME,
         check=check_every_region,
         domain="plane",
-        count=200,
+        count=250,
     ),
     Claim(
         name="lemma-2-proof",
@@ -128,7 +128,7 @@ CLAIMS = (
         cases=SOME,
         check=check_case_of_proof,
         domain="plane",
-        count=200,
+        count=250,
     ),
     Claim(
         name="lemma-2-repaired",
@@ -149,6 +149,6 @@ CLAIMS = (
         cases=SOME,
         check=check_one_of_two,
         domain="plane",
-        count=200,
+        count=250,
     ),
 )
