@@ -36,6 +36,7 @@ ROOMS = (
     "study",
     "bench",
     "analysis",
+    "audit",
     "report",
     "voronoi",
     "cli",

@@ -25,6 +25,7 @@ VERBS = (
     "families",
     "study",
     "report",
+    "audit",
     "figures",
     "bench",
 )

@@ -59,7 +59,7 @@ def write_mesh_report(directory: Path) -> tuple[Path, list[str]]:
         description=DESCRIPTION,
         tasks=_tasks(rows, manifest),
         answer=answer(found),
-        findings=_findings_table(found),
+        findings=findings_table(found),
         sizes=[_size_table(done, *group) for group in _groups(done)],
         figures=measured,
         paper=paper,
@@ -75,7 +75,8 @@ def _tasks(rows: Sequence[Row], manifest: Any) -> str:
     return f"{len(rows)} of {planned} tasks have a row: {counts}."
 
 
-def _findings_table(found: Sequence[MethodFindings]) -> Table:
+def findings_table(found: Sequence[MethodFindings]) -> Table:
+    """The methods side by side: one line each, from all meshes of the study."""
     head = ["method", "meshes", "up", "down", "inverted", "failed", "smallest angle before"]
     head += ["after", "iterations ×", "error ×"]
     head += ["greater smallest angle", "fewer iterations", "less error", "time ×"]

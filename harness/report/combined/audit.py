@@ -2,95 +2,119 @@
 
 from __future__ import annotations
 
-import csv
-import io
-import json
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from harness.errors import UserError
+import pandas as pd
+
+from harness.audit.claim import OUTCOMES, Claim
+from harness.audit.registry import CLAIMS
+from harness.audit.store import INSTANCES, read_verdicts
+from harness.geometry.formats import read_instance
+from harness.report.audit_drawing import example_svg
+from harness.report.audit_page import tone
 from harness.report.combined.parts import Chapter, Picture, Workshop
 from harness.report.labels import plural
 from harness.report.sections import Cell, Table
 from harness.report.style import inline
+from harness.report.tables import to_csv
 
 SLUG, QUESTION = "audit", "Which statements of the paper hold?"
 DIRECTORY = "audit"
-OUTCOMES = ("holds", "fails", "undecided", "outside")
+KINDS = {"bad": "bad", "good": "good", "open": "warn"}
+
+Records = Mapping[str, Mapping[str, Any]]
 
 
 def audit_chapter(shop: Workshop) -> Chapter:
     """A line for each statement, and the smallest example that was found, drawn."""
     directory = shop.results / DIRECTORY
-    records = _records(directory / "verdicts.json")
+    records = {name: r for name, r in read_verdicts(directory).items() if name in CLAIMS}
     if not records:
-        missing = "No audit is stored here yet (avd audit makes it)."
-        return Chapter(SLUG, QUESTION, missing=missing)
-    failing = [name for name, record in records.items() if record["tally"].get("fails")]
-    rows = [_row(name, record) for name, record in records.items()]
-    tried = sum(int(r["tally"].get(o, 0)) for r in records.values() for o in OUTCOMES[:2])
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["claim", "verdict", *OUTCOMES])
-    for name, record in records.items():
-        tally = record["tally"]
-        writer.writerow([name, record["verdict"], *(tally.get(o, 0) for o in OUTCOMES)])
+        return Chapter(SLUG, QUESTION, missing="No audit is stored here yet (avd audit makes it).")
+    tones = {name: tone(CLAIMS[name], record) for name, record in records.items()}
+    refuted = [CLAIMS[name].title for name in records if tones[name] == "bad"]
+    tried = sum(record["tally"]["holds"] + record["tally"]["fails"] for record in records.values())
+    sentences = [
+        f"{plural(len(records), 'reading')} of the paper’s statements, tried on {tried} instances "
+        f"in all: {sum(t == 'good' for t in tones.values())} held, {len(refuted)} did not, "
+        f"{sum(t == 'open' for t in tones.values())} remain open. What held is not thereby proved; "
+        "what did not has a counterexample below."
+    ]
+    if refuted:
+        sentences.append(f"Not as stated: {'; '.join(refuted)}.")
     return Chapter(
         SLUG,
         QUESTION,
-        f"{len(records) - len(failing)} of {len(records)} readings survive",
-        "",
+        f"{len(refuted)} of {len(records)} readings fail" if refuted else "All that were tried",
+        "faster" if refuted else "",
+        sentences,
+        list(_pictures(shop, directory, records, tones)),
+        [_table(records, tones)],
         [
-            f"{plural(len(records), 'reading')} of the paper’s statements as executable checks, "
-            f"{tried} verdicts on single instances. A failure is a counterexample, or, for a "
-            "statement that something exists, an instance without it; what survives is not "
-            "thereby proved."
+            "Each statement was tested in the reading that the audit’s own report gives in full, "
+            "with what counts as a failure, what decides, and the instance files."
         ],
-        _pictures(directory, records),
-        [Table("Statements, as tested", ["statement", "verdict", *OUTCOMES], rows)],
-        downloads=[shop.download("audit", text.getvalue())],
-        sources=[DIRECTORY],
+        [shop.download("statements", to_csv(_frame(records, tones)))],
+        [DIRECTORY],
     )
 
 
-def _records(path: Path) -> dict[str, Any]:
-    if not path.exists():
-        return {}
-    try:
-        found = json.loads(path.read_text(encoding="utf-8"))
-    except ValueError as error:
-        raise UserError(f"{path}: cannot be read: {error}") from None
-    if not isinstance(found, dict) or not all(
-        isinstance(record, dict) and {"verdict", "tally"} <= set(record)
-        for record in found.values()
-    ):
-        raise UserError(f"{path}: not the verdicts of an audit")
-    return found
-
-
-def _row(name: str, record: dict[str, Any]) -> list[Cell]:
-    verdict = str(record["verdict"])
-    kind = "bad" if verdict.startswith("fails") else "good"
-    if verdict.startswith(("nothing", "no example")):
-        kind = "warn"
-    counts = [str(record["tally"].get(outcome, 0)) for outcome in OUTCOMES]
-    return [
-        Cell(str(record.get("title", name))),
-        Cell(verdict, verdict, kind),
-        *(Cell("" if count == "0" else count, count) for count in counts),
-    ]
-
-
-def _pictures(directory: Path, records: dict[str, Any]) -> list[Picture]:
-    """The drawings that the audit left, of the examples it found."""
-    found = []
+def _table(records: Records, tones: Mapping[str, str]) -> Table:
+    rows = []
     for name, record in records.items():
-        for path in sorted(directory.glob(f"*/{name}.svg")):
-            example = record.get("example") or {}
-            caption = f"{record['verdict']}. {example.get('message', '')}".strip()
-            document = path.read_text(encoding="utf-8")
-            where = f"{DIRECTORY}/{path.parent.name}/{path.name}"
-            title = str(record.get("title", name))
-            shown = inline(document, f"audit-{name}", f"{title}. {caption}")
-            found.append(Picture(f"audit-{name}", title, caption, shown, where))
-    return found
+        claim, counts = CLAIMS[name], [str(record["tally"][outcome]) for outcome in OUTCOMES]
+        rows.append(
+            [
+                Cell(claim.title),
+                Cell(claim.gloss),
+                Cell(str(record["verdict"]), tones[name], KINDS[tones[name]]),
+                *(Cell("" if count == "0" else count, count) for count in counts),
+            ]
+        )
+    head = ["statement", "what it says", "verdict", *OUTCOMES]
+    return Table("Statements, in the order of the paper", head, rows)
+
+
+def _frame(records: Records, tones: Mapping[str, str]) -> pd.DataFrame:
+    return pd.DataFrame.from_records(
+        [
+            {
+                "claim": name,
+                "title": CLAIMS[name].title,
+                "says": CLAIMS[name].gloss,
+                "verdict": record["verdict"],
+                "tone": tones[name],
+                **{outcome: record["tally"][outcome] for outcome in OUTCOMES},
+            }
+            for name, record in records.items()
+        ]
+    )
+
+
+def _pictures(
+    shop: Workshop, directory: Path, records: Records, tones: Mapping[str, str]
+) -> Iterator[Picture]:
+    """The smallest counterexample of each statement about a diagram that failed."""
+    for name, record in records.items():
+        example = record.get("example")
+        path = directory / INSTANCES / f"{name}.json"
+        if tones[name] == "bad" and example and example["domain"] and path.exists():
+            document = example_svg(read_instance(path), example)
+            where = f"{DIRECTORY}/figures/{name}.svg"
+            shop.files[where] = document
+            caption = _caption(CLAIMS[name], record)
+            shown = inline(document, f"audit-{name}", f"{CLAIMS[name].title}. {caption}")
+            title = f"{CLAIMS[name].title} ({CLAIMS[name].gloss})"
+            yield Picture(f"audit-{name}", title, caption, shown, where)
+
+
+def _caption(claim: Claim, record: Mapping[str, Any]) -> str:
+    """The verdict, and what the example shows."""
+    example = record["example"]
+    place = "the plane" if example["domain"] == "plane" else f"the {example['domain']}"
+    word = "Smallest instance above the bound" if claim.kind == "growth" else "Counterexample"
+    text = f"{str(record['verdict']).capitalize()}. {word}, {example['n']} segments, in {place}"
+    text += f": {example['message']}."
+    return text + (" Rings mark the place." if example["marks"] else "")

@@ -3,73 +3,47 @@
 from __future__ import annotations
 
 import csv
-import statistics
 from pathlib import Path
 
+from harness.analysis.meshes import PAPER, answer, findings
 from harness.report.combined.parts import Chapter, Workshop, absent
-from harness.report.labels import number, plural
-from harness.report.mesh_report import GAIN
+from harness.report.labels import plural
+from harness.report.mesh_report import findings_table
 from harness.report.sections import Cell, Table, cell
-from harness.study.meshes import METHODS, is_mesh_study, read_meshes
+from harness.study.mesh_rows import is_mesh_study, read_meshes
 
 MESH = ("mesh", "Does moving vertices by their angles pay?")
 BENCH = ("bench", "How fast are the programs?")
-PAPER = "apex"
-OURS = "all"
+PLATES = ("figure-5", "figure-6", "meshes")
 
 
 def mesh_chapter(shop: Workshop) -> Chapter:
     """The methods of mesh improvement side by side."""
     directory = shop.results / "mesh"
-    rows = read_meshes(directory) if is_mesh_study(directory) else []
-    if not rows:
+    found = findings(read_meshes(directory)) if is_mesh_study(directory) else []
+    if not found:
         return absent(*MESH, ("mesh",))
-    methods = [method for method in METHODS if any(row["method"] == method for row in rows)]
-    lines = {method: _figures([r for r in rows if r["method"] == method]) for method in methods}
-    sentences = []
-    for method, words in ((PAPER, "The paper’s greedy"), (OURS, "Raising all angles at once")):
-        if method in lines:
-            line = lines[method]
+    said = {each.method: each for each in found}
+    best = max(found, key=lambda each: each.smallest)
+    sentences = [answer(found)]
+    for method, words in ((PAPER, "The paper’s greedy"), (best.method, f"“{best.method}”")):
+        if method in said:
+            each = said[method]
             sentences.append(
-                f"{words} raised the smallest angle in {line['rose']:g} of {line['meshes']:g} "
-                f"meshes and lowered it in {line['fell']:g}; in the median it went from "
-                f"{number(line['before'])}° to {number(line['after'])}°."
+                f"{words} raised the smallest angle on {each.rose} of {each.meshes} meshes and "
+                f"lowered it on {each.fell}; its median went from {each.smallest_before:.2f}° to "
+                f"{each.smallest:.2f}°."
             )
-    best = max(lines, key=lambda method: lines[method]["after"])
-    sentences.append(f"The largest median was reached by “{best}”.")
-    head = ["method", "meshes", "rose", "fell", "inverted", "smallest before (°)"]
-    head += ["smallest after (°)", "mean of least angles (°)", "seconds"]
-    keys = ("meshes", "rose", "fell", "inverted", "before", "after", "mean", "seconds")
-    body = [[Cell(name), *(cell(line[key]) for key in keys)] for name, line in lines.items()]
-    rose, meshes = (sum(line[key] for line in lines.values()) for key in ("rose", "meshes"))
+    rose, meshes = sum(each.rose for each in found), sum(each.meshes for each in found)
     return Chapter(
         *MESH,
-        f"The smallest angle rose in {rose:g} of {meshes:g} runs",
+        f"The smallest angle rose in {rose} of {meshes} runs",
         "",
         sentences,
-        shop.shelved(["figure-5", "figure-6"]),
-        [Table("Methods compared (medians over all meshes)", head, body)],
+        shop.shelved(PLATES, wide=["meshes"]),
+        [findings_table(found)],
         sources=["mesh"],
     )
-
-
-def _figures(rows: list[dict[str, str]]) -> dict[str, float]:
-    """Counts and medians over the meshes of one method."""
-    gains = [float(row["smallest"]) - float(row["smallest_before"]) for row in rows]
-
-    def median(column: str) -> float:
-        return statistics.median(float(row[column]) for row in rows)
-
-    return {
-        "meshes": len(rows),
-        "rose": sum(gain > GAIN for gain in gains),
-        "fell": sum(gain < -GAIN for gain in gains),
-        "inverted": sum(int(row["inverted"]) > 0 for row in rows),
-        "before": median("smallest_before"),
-        "after": median("smallest"),
-        "mean": median("mean"),
-        "seconds": median("seconds"),
-    }
 
 
 def bench_chapter(shop: Workshop) -> Chapter:

@@ -16,7 +16,7 @@ from harness.report.plates.comparisons import (
 )
 from harness.report.plates.families import draw_gallery
 from harness.report.plates.families import height as gallery_height
-from harness.report.plates.meshes import draw_figure_5, draw_figure_6
+from harness.report.plates.meshes import draw_figure_5, draw_figure_6, draw_meshes
 from harness.report.plates.paper import draw_figure_1, draw_figure_2, draw_figure_3, draw_figure_4
 from harness.report.plates.parts import recipe_of
 from harness.report.plates.peaks import draw_peaks, draw_star
@@ -45,6 +45,7 @@ _ALL = (
     Plate("figure-4", "Two circles of one visual angle", (5.6, 4.2), draw_figure_4),
     Plate("figure-5", "A mesh improved", (7.2, 2.3), draw_figure_5),
     Plate("figure-6", "An ear cut off", (7.2, 2.3), draw_figure_6),
+    Plate("meshes", "A mesh and what becomes of it", (12.0, 3.6), draw_meshes),
     Plate("star", "A star, its interior and its kernel", (7.0, 3.75), draw_star),
     Plate("peaks", "Level sets and peaks", (7.0, 3.6), draw_peaks),
     Plate(

@@ -31,6 +31,17 @@ def draw_figure_6(figure: Figure, _: Path) -> str:
     )
 
 
+def draw_meshes(figure: Figure, _: Path) -> str:
+    """A random mesh, and what becomes of it."""
+    mesh_figures.draw_meshes(figure)
+    return (
+        "A random mesh and what becomes of it: moved by the paper’s greedy (apex), by raising all "
+        "angles at once (all), and with exchanged, inserted and deleted edges and vertices too "
+        "(all, full). Triangles are coloured by their smallest angle; above each mesh, the "
+        "smallest of all."
+    )
+
+
 def _tighten(figure: Figure) -> None:
     """The panels side by side, with room for their labels only."""
     figure.subplots_adjust(left=0.01, right=0.99, top=0.99, bottom=0.06, wspace=0.03)
