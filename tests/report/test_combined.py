@@ -48,30 +48,44 @@ def weaves(shapes: list[float], noises: list[float], scale: int) -> pd.DataFrame
 
 
 def meshes(directory: Path) -> None:
+    """Three meshes and three methods: the smallest angle falls, stays or rises."""
     directory.mkdir()
     text = io.StringIO()
-    writer = csv.DictWriter(text, MESH_COLUMNS, restval="0", lineterminator="\n")
+    writer = csv.DictWriter(text, MESH_COLUMNS, restval="1", lineterminator="\n")
     writer.writeheader()
-    for method, gain in (("apex", -1.0), ("all", 2.0)):
+    for method, gain in (("smart-laplacian", 0.0), ("apex", -1.0), ("all", 2.0)):
         for seed in range(3):
-            figures = {"smallest_before": 10.0, "smallest": 10.0 + gain + seed, "seconds": 0.5}
-            writer.writerow({"family": "x", "n": 5, "seed": seed, "method": method, **figures})
+            figures = {"smallest_before": 10.0, "smallest": 10.0 + gain + seed, "inverted": 0}
+            identity = {"family": "x", "n": 5, "seed": seed, "method": method, "status": "ok"}
+            writer.writerow({**identity, **figures})
     (directory / "rows.csv").write_text(text.getvalue())
 
 
 def audit(directory: Path) -> None:
-    (directory / "figures").mkdir(parents=True)
+    """Two statements, one with a counterexample: its two segments are crossed by no line."""
+    (directory / "instances").mkdir(parents=True)
+    nothing = dict.fromkeys(("holds", "fails", "undecided", "outside"), 0)
+    common = {"count": 9, "seed": 0}
+    example = {"domain": "plane", "n": 2, "marks": [[0.5, 1]], "message": "segment <1> is whole"}
     verdicts = {
-        "lemma-1": {"verdict": "holds on all 7 tried", "tally": {"holds": 7, "fails": 0}},
+        "lemma-1": {
+            "claim": "lemma-1",
+            "verdict": "holds on all 7 tried",
+            "tally": {**nothing, "holds": 7},
+            "example": None,
+            **common,
+        },
         "lemma-2": {
+            "claim": "lemma-2",
             "verdict": "fails on 2 of 5",
-            "tally": {"holds": 3, "fails": 2, "undecided": 1},
-            "example": {"message": "segment 0 has <1> cell"},
+            "tally": {**nothing, "holds": 3, "fails": 2},
+            "example": example,
+            **common,
         },
     }
     (directory / "verdicts.json").write_text(json.dumps(verdicts))
-    drawing = '<svg xmlns="http://www.w3.org/2000/svg" width="9" height="9"><path d="M 0 0"/></svg>'
-    (directory / "figures" / "lemma-2.svg").write_text(drawing)
+    pair = {"kind": "segments", "segments": [[[0, 0], [1, 0]], [[3, -1], [3, 1]]]}
+    (directory / "instances" / "lemma-2.json").write_text(json.dumps(pair))
 
 
 @pytest.fixture(scope="module")
@@ -137,10 +151,12 @@ def test_answers_come_from_the_rows(results: Path, files: dict[str, str]) -> Non
     assert best["per_edge"] == pytest.approx((counted["vertices"] / counted["segments"]).max())
     assert f"n = {best['n']} edges has {best['vertices']} vertices, certified" in said
     assert "fails on 2 of 5" in said
-    assert "segment 0 has <1> cell" in said
-    assert "1 of 2 readings survive" in said
-    assert "The smallest angle rose in 4 of 6 runs" in said
-    assert "raised the smallest angle in 1 of 3 meshes and lowered it in 1" in said
+    assert "segment <1> is whole" in said
+    assert "1 of 2 readings fail" in said
+    assert "The smallest angle rose in 6 of 9 runs" in said
+    assert (
+        "The paper’s greedy raised the smallest angle on 1 of 3 meshes and lowered it on 1" in said
+    )
 
 
 def test_the_planted_scaling_is_found(files: dict[str, str]) -> None:
@@ -190,7 +206,9 @@ def test_the_verb_knows_a_directory_of_studies(results: Path, tmp_path: Path, ca
     assert main(["report", str(results)]) == 0
     out = capsys.readouterr().out.splitlines()
     assert out[0] == str(results / REPORT)
-    assert any(line.startswith("Which statements of the paper hold? 1 of 2") for line in out)
+    assert any(
+        line.startswith("Which statements of the paper hold? 1 of 2 readings fail") for line in out
+    )
 
 
 def test_damaged_files_are_refused(tmp_path: Path) -> None:

@@ -58,6 +58,7 @@ def audit_chapter(shop: Workshop) -> Chapter:
         ],
         [shop.download("statements", to_csv(_frame(records, tones)))],
         [DIRECTORY],
+        is_small=True,
     )
 
 

@@ -38,7 +38,7 @@ class Chapter:
 
     ``missing`` says which rows there are none of; then there is no answer.  ``sources`` are the
     studies it was made from, as directories relative to the page.  ``part`` has a template of
-    its own, which comes last.
+    its own, which comes last.  ``is_small``: many small pictures, after the tables.
     """
 
     slug: str
@@ -53,6 +53,7 @@ class Chapter:
     sources: Sequence[str] = ()
     missing: str = ""
     part: Part | None = None
+    is_small: bool = False
 
 
 @dataclass

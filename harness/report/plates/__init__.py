@@ -45,7 +45,7 @@ _ALL = (
     Plate("figure-4", "Two circles of one visual angle", (5.6, 4.2), draw_figure_4),
     Plate("figure-5", "A mesh improved", (7.2, 2.3), draw_figure_5),
     Plate("figure-6", "An ear cut off", (7.2, 2.3), draw_figure_6),
-    Plate("meshes", "A mesh and what becomes of it", (12.0, 3.6), draw_meshes),
+    Plate("meshes", "A mesh and what becomes of it", (9.6, 2.6), draw_meshes),
     Plate("star", "A star, its interior and its kernel", (7.0, 3.75), draw_star),
     Plate("peaks", "Level sets and peaks", (7.0, 3.6), draw_peaks),
     Plate(

@@ -33,6 +33,7 @@ def draw_figure_6(figure: Figure, _: Path) -> str:
 
 def draw_meshes(figure: Figure, _: Path) -> str:
     """A random mesh, and what becomes of it."""
+    figure.set_layout_engine("constrained")
     mesh_figures.draw_meshes(figure)
     return (
         "A random mesh and what becomes of it: moved by the paper’s greedy (apex), by raising all "
