@@ -10,7 +10,8 @@ about (n/2)(1 − 2τ/π) others, and every passing makes two triple points:
     vertices ≈ (n²/2)(1 − 2τ/π).
 
 Noise of relative size ``noise``·n^(−``noise_power``) makes the polygon generic; the default is
-far below the n⁻² at which the weave begins to come apart.
+below the n⁻³ (convex: n⁻⁴) at which the weave comes apart.  The exact numbers of vertices and
+cells, and the noise they bear, are derived in ``harness.analysis.weave`` and ``weave_noise``.
 """
 
 from __future__ import annotations

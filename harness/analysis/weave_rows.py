@@ -25,31 +25,33 @@ SHAPES: Mapping[str, tuple[str, Callable[[int, float], float]]] = {
 FINDINGS: Mapping[str, str] = {
     "as predicted": "vertices, edges, cells and degrees are the predicted ones",
     "symmetric": (
-        "no noise: ties on exact mirror axes of the polygon in doubles stay ties; the cells are "
-        "the predicted ones, and the vertices too but for how rounding resolved the centre"
+        "no noise: as predicted for a polygon rounded to doubles, but for how the centre resolved"
     ),
-    "noise": "the noise is too large for the smallest gap between two passings of this weave",
+    "noise": "too much noise for the smallest gap between two passings of this weave",
     "unexplained": "the counts contradict the prediction",
 }
 
 COLUMNS = (
     *("family", "n", "shape", "noise", "replicate", "tilt", "passings", "gap", "tolerance"),
     *("strain", "vertices", "vertices_low", "vertices_high", "edges", "cells"),
-    *("predicted_cells", "generic_vertices", "generic_cells", "share", "finding"),
+    *("predicted_cells", "generic_vertices", "generic_cells", "share", "degrees"),
+    "finding",
 )
 
 
 def compare(frame: pd.DataFrame) -> pd.DataFrame:
-    """One row for each counted weave in its kernel: what was counted and what was predicted.
+    """One row for each certified count of a weave in its kernel, beside what was predicted.
 
     ``frame`` has the columns of a study's rows.  ``shape`` is the tilt or δ that was asked for,
     ``tilt`` is ν in radians; ``noise`` is relative; ``gap`` is the distance of the passing
     nearest to rim or centre from it, in spacings; ``strain`` is noise and rounding over the
-    ``tolerance``; ``share`` is vertices over the generic prediction; ``finding`` is one of
-    ``FINDINGS``.  Rows of other families, domains and objectives, and failures, are left out.
+    ``tolerance``; ``share`` is vertices over the generic prediction; ``degrees`` reads
+    “28×3, 19×4”; ``finding`` is one of ``FINDINGS``.  Rows of other families, domains and
+    objectives, and failures, are left out.
     """
     rows = frame[frame["family"].isin(list(SHAPES)) & (frame["status"] == "ok")]
     rows = rows[(rows["domain"] == "kernel") & (rows["objective"] == "smallest")]
+    rows = rows[rows["certified"].astype(bool)]
     records = [_record(row) for row in rows.to_dict("records")]
     table = pd.DataFrame.from_records(records, columns=list(COLUMNS))
     return table.sort_values(
@@ -87,6 +89,7 @@ def _record(row: Mapping[Any, Any]) -> dict[str, object]:
         "generic_vertices": weave.vertices,
         "generic_cells": weave.cells,
         "share": vertices / weave.vertices,
+        "degrees": ", ".join(f"{count}×{degree}" for degree, count in sorted(degrees.items())),
         "finding": _finding(expected, vertices, edges, cells, degrees, strain),
     }
 

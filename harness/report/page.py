@@ -19,6 +19,7 @@ from harness.report import figures, provenance, summary, tables, weaves
 from harness.report.build import REPORT, StudyGrowth
 from harness.report.examples import Example, example
 from harness.report.labels import bracket, number, percent, plain, sizes
+from harness.report.parts import Part
 from harness.report.sections import Cell, Download, Section, Table, cell, section
 from harness.report.style import inline, render
 
@@ -76,7 +77,7 @@ def _page(
     downloads: dict[str, Download],
     overviews: list[dict[str, str]],
     examples: Mapping[str, Example | None],
-    special: list[weaves.Part],
+    special: list[Part],
 ) -> str:
     manifest = study.manifest or {}
     return (

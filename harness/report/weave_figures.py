@@ -83,8 +83,16 @@ def collapse(
             axes.legend(loc="lower left", handlelength=1.4)
 
 
-def heat_map(figure: Figure, points: pd.DataFrame, exponents: Sequence[float]) -> None:
-    """The median share over n and noise; lines of constant ε·nᵃ for some exponents a."""
+def heat_map(
+    figure: Figure,
+    points: pd.DataFrame,
+    exponents: Sequence[float],
+    through: Mapping[int, float],
+) -> None:
+    """The median share over n and noise; lines of constant ε·nᵃ for some exponents a.
+
+    ``through``: the transition, noise by n, in whose middle the lines meet.
+    """
     axes = figure.add_axes((0.13, 0.14, 0.7, 0.76))
     shown = axes.scatter(
         points["n"],
@@ -100,14 +108,16 @@ def heat_map(figure: Figure, points: pd.DataFrame, exponents: Sequence[float]) -
     axes.set_yscale("log")
     sizes = np.array(sorted(set(points["n"])), dtype=np.float64)
     axes.set_xticks(sizes, [f"{n:g}" for n in sizes])
-    middle = float(np.exp(np.log(points["noise"]).mean()))
-    for exponent, line in zip(exponents, ("-", "--", ":"), strict=False):
-        scaled = middle * (sizes / np.exp(np.log(sizes).mean())) ** -exponent
-        axes.plot(sizes, scaled, line, color=BLACK, lw=1.0, label=f"ε ~ n^−{exponent:.2g}")
+    if through:
+        centre = np.exp(np.log(list(through)).mean())
+        middle = np.exp(np.log(list(through.values())).mean())
+        for exponent, line in zip(exponents, ("-", "--", ":"), strict=False):
+            scaled = middle * (sizes / centre) ** -exponent
+            axes.plot(sizes, scaled, line, color=BLACK, lw=1.0, label=f"ε ~ n^−{exponent:.2g}")
+        axes.legend(loc="lower left")
     axes.set_xlim(sizes[0] / 1.4, sizes[-1] * 1.4)
     axes.set_xlabel("segments n")
     axes.set_ylabel("relative noise ε")
     axes.set_title("share of the predicted vertices")
-    axes.legend(loc="lower left")
     bar = figure.colorbar(shown, cax=figure.add_axes((0.86, 0.14, 0.03, 0.76)))
     bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{100 * value:.0f} %"))

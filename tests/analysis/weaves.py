@@ -39,10 +39,14 @@ def corners(m: int, inner: float) -> np.ndarray:
     return np.stack([radius * np.cos(turn), radius * np.sin(turn)], axis=1)
 
 
+def visual_angles(vertices: np.ndarray, p: np.ndarray) -> np.ndarray:
+    a, b = vertices - p, np.roll(vertices, -1, axis=0) - p
+    return np.arctan2(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], (a * b).sum(axis=1))
+
+
 def smallest(vertices: np.ndarray, p: np.ndarray) -> tuple[int, float, float]:
     """The edge seen under the smallest angle, that angle, and by how much the next is larger."""
-    a, b = vertices - p, np.roll(vertices, -1, axis=0) - p
-    angle = np.arctan2(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], (a * b).sum(axis=1))
+    angle = visual_angles(vertices, p)
     order = np.argsort(angle)
     return int(order[0]), float(angle[order[0]]), float(angle[order[1]] - angle[order[0]])
 

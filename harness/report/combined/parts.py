@@ -7,12 +7,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal
 
+from harness.report.parts import Part
 from harness.report.plates import PLATES, printed
 from harness.report.plates.shelf import shelf
 from harness.report.sections import Download, Table
 from harness.report.style import inline
 from harness.report.tables import to_csv
-from harness.report.weaves import Part
 
 #: The look of an answer: against the paper's expectation, with it, or neither.
 Tone = Literal["faster", "slower", ""]

@@ -9,10 +9,11 @@ from typing import Any
 from harness.report.build import read
 from harness.report.combined.parts import Chapter, Workshop, absent
 from harness.report.labels import number
+from harness.report.parts import Figure, Part
 from harness.report.plates.comparisons import SMOOTHED, WEAVE
 from harness.report.plates.studies import first_of
 from harness.report.sections import Download
-from harness.report.weaves import Figure, Part, parts
+from harness.report.weaves import parts
 
 CONSTANT = ("weave", "How many vertices does a weave have?")
 NOISE = ("smoothed", "How much noise does a weave bear?")

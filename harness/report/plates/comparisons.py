@@ -11,8 +11,9 @@ from harness.analysis.weave_rows import compare
 from harness.report import weave_figures
 from harness.report.labels import bracket, number
 from harness.report.plates.studies import rows_of
+from harness.report.smoothed import collapses, points_of
 from harness.report.weave_picture import ideal, weave_picture
-from harness.report.weaves import collapses, points_of, predicted
+from harness.report.weaves import predicted
 
 WEAVE = ("weave", "weave-small")
 SMOOTHED = ("smoothed", "smoothed-small")
