@@ -53,6 +53,11 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument(
         "study", metavar="STUDY", nargs="?", help="a study file, or the name of a built-in study"
     )
+    parser.add_argument(
+        "--scale",
+        choices=("small", "full"),
+        help="of a study in two sizes, NAME.toml and NAME-small.toml (default: full)",
+    )
     parser.add_argument("--list", action="store_true", help="list the built-in studies and exit")
     parser.add_argument(
         "--out", metavar="DIR", type=Path, help="the study's directory (default: results/NAME)"
@@ -98,9 +103,12 @@ def run(args: argparse.Namespace) -> int:
     if args.study == MESHES:
         return _run_meshes(args)
 
-    from harness.study.builtin import find_study
+    from harness.study.builtin import NoScales, find_study
 
-    study = find_study(args.study)
+    try:
+        study = find_study(args.study, args.scale)
+    except NoScales as problem:
+        args.usage_error(str(problem))
     directory = args.out or Path("results") / study.name
     try:
         summary = _run(args, study, directory)
@@ -139,6 +147,8 @@ def _run_meshes(args: argparse.Namespace) -> int:
 
     if args.engine != "local" or args.jobs is not None:
         args.usage_error("the study mesh runs one task after the other, on this machine")
+    if args.scale is not None:
+        args.usage_error("the study mesh has no scales")
     directory = args.out or Path("results") / MESHES
     try:
         with Progress("study mesh", len(tasks()), {}) as progress:
@@ -214,7 +224,7 @@ def _say_how_it_went(args: argparse.Namespace, summary: Summary) -> None:
 def _command(args: argparse.Namespace, mode: str | None) -> str:
     """The command line as it was given, but with another mode."""
     words = ["avd", "study", args.study]
-    for option in ("out", "jobs", "scheduler"):
+    for option in ("scale", "out", "jobs", "scheduler"):
         value = getattr(args, option)
         if value is not None:
             words += [f"--{option}", str(value)]

@@ -15,6 +15,7 @@ from harness.study import find_study, load
 from harness.study.outcome import row_of
 from harness.study.store import ROWS, read_rows, replace_rows
 from harness.study.worker import SanityError, execute
+from tests.study import fakes
 from tests.study.studies import study
 
 SMALL = """\
@@ -160,7 +161,7 @@ def test_a_map_that_fails_its_check_is_no_ok_row(monkeypatch: pytest.MonkeyPatch
     """Not even if the check complains in the way in which bad input is complained of."""
 
     class Wrong:
-        counts = None
+        counts = fakes.quick(study().tasks[0]).counts
 
         def sanity_check(self) -> None:
             raise UserError("edge 3 has no twin")
