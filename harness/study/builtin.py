@@ -8,8 +8,8 @@ from pathlib import Path
 from harness.errors import UserError, suggestion
 from harness.study.study_file import Study, read_study
 
-SCALES = ("small", "full")
-"""A study that comes in two sizes is two files, ``NAME.toml`` and ``NAME-small.toml``."""
+SMALL, FULL = "small", "full"
+"""The scales of a study that is two files: ``NAME-small.toml`` and ``NAME.toml``."""
 
 _FOLDER = Path(__file__).parent / "builtin"
 
@@ -24,7 +24,7 @@ class NoScales(Exception):
 
 
 def find_study(name: str, scale: str | None = None) -> Study:
-    """The study in the file ``name``, or the built-in study of that name, in one of ``SCALES``.
+    """The study in the file ``name``, or the built-in study of that name, in one of its scales.
 
     A word without directory and suffix names a built-in study, so a directory ``quick`` in the
     way does not matter.  Without ``scale`` the study is taken as named.  Raises UserError if there
@@ -32,10 +32,10 @@ def find_study(name: str, scale: str | None = None) -> Study:
     """
     path = _path_of(name)
     if scale is not None:
-        small = path.with_name(f"{path.stem}-{SCALES[0]}{path.suffix}")
+        small = path.with_name(f"{path.stem}-{SMALL}{path.suffix}")
         if path.is_file() and not small.is_file():
             raise NoScales(f"{name} has no scales: there is no {small.name} beside {path.name}")
-        path = small if scale == SCALES[0] and path.is_file() else path
+        path = small if scale == SMALL and path.is_file() else path
     return read_study(path)
 
 
