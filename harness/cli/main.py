@@ -24,6 +24,7 @@ VERBS = (
     "generate",
     "families",
     "study",
+    "verify",
     "report",
     "audit",
     "figures",

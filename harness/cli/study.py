@@ -55,6 +55,11 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument(
         "study", metavar="STUDY", nargs="?", help="a study file, or the name of a built-in study"
     )
+    parser.add_argument(
+        "--scale",
+        choices=("small", "full"),
+        help="of a study in two sizes, NAME.toml and NAME-small.toml (default: full)",
+    )
     parser.add_argument("--list", action="store_true", help="list the built-in studies and exit")
     parser.add_argument(
         "--out", metavar="DIR", type=Path, help="the study's directory (default: results/NAME)"
@@ -127,14 +132,19 @@ def _chosen(args: argparse.Namespace) -> tuple[Callable[[Path], Summary], str]:
         "resume_command": _command(args, "--resume"),
     }
     if args.study == MESHES:
+        if args.scale is not None:
+            args.usage_error("the study mesh has no scales")
         from harness.study.mesh_runner import run_meshes
 
         return partial(run_meshes, **settings), MESHES
 
-    from harness.study.builtin import find_study
+    from harness.study.builtin import NoScales, find_study
     from harness.study.runner import run_study
 
-    study = find_study(args.study)
+    try:
+        study = find_study(args.study, args.scale)
+    except NoScales as problem:
+        args.usage_error(str(problem))
     return partial(run_study, study, **settings), study.name
 
 
@@ -187,7 +197,7 @@ def _say_how_it_went(args: argparse.Namespace, summary: Summary) -> None:
 def _command(args: argparse.Namespace, mode: str | None) -> str:
     """The command line as it was given, but with another mode."""
     words = ["avd", "study", args.study]
-    for option in ("out", "jobs", "scheduler"):
+    for option in ("scale", "out", "jobs", "scheduler"):
         value = getattr(args, option)
         if value is not None:
             words += [f"--{option}", str(value)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import io
 import re
 from collections.abc import Callable, Iterator, Mapping
@@ -10,6 +11,8 @@ from typing import Any
 
 import matplotlib as mpl
 from matplotlib.figure import Figure
+
+from harness.report.slim import slim
 
 # The colour-blind-safe palette of Okabe and Ito (2008).
 BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
@@ -78,15 +81,17 @@ def render(draw: Callable[[Figure], None], width: float, height: float) -> str:
     with in_style():
         figure = Figure(figsize=(width, height))
         draw(figure)
-        return saved(figure, "svg").decode()
+        return slim(saved(figure, "svg").decode())
 
 
 def inline(svg: str, prefix: str, description: str) -> str:
     """The SVG as an element of an HTML page.
 
-    Its ids get a prefix, since a page holds many figures; ``description`` is what a screen reader
-    says.  The prologue goes, and so does the fixed size: the page decides it.
+    Its ids get a prefix, made from ``prefix`` and short, since a page holds many figures;
+    ``description`` is what a screen reader says.  The prologue goes, and so does the fixed size:
+    the page decides it.
     """
+    prefix = "f" + hashlib.sha256(prefix.encode()).hexdigest()[:6]
     element = svg[svg.index("<svg") :]
     element = re.sub(r"<style type=\"text/css\">.*?</style>", "", element, count=1, flags=re.S)
     element = re.sub(r"<!--.*?-->\s*", "", element, flags=re.S)

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 ORDER = ["family", "params", "n", "domain", "objective", "builder", "replicate"]
-"""How the rows are sorted; the file has them in the order of completion."""
+"""How the rows are sorted; the file has them in another order."""
 
 _WHOLE = ("schema", "n", "replicate", "seed")
 _PERHAPS_WHOLE = ("segments", *COUNT_COLUMNS)

@@ -4,7 +4,8 @@ A study's directory holds::
 
     study.toml       the study file, verbatim, as of the last run
     manifest.json    where the rows come from (``manifest``)
-    rows.csv         a row for each finished task, in the order of completion (``store``)
+    rows.csv         a row for each finished task: in the order of completion while tasks are
+                     missing, in that of the study once it is complete (``store``)
     rows-aside.csv   rows of tasks that left the study or were run again
     failures.log     tracebacks and last words of the tasks that failed
     earlier/         what ``--fresh`` moved out of the way
@@ -33,7 +34,7 @@ from harness.study.outcome import Outcome, one_line, row_of
 from harness.study.processors import default_jobs
 from harness.study.progress import Progress
 from harness.study.schema import Record
-from harness.study.store import ASIDE, ROWS, RowFile, read_rows, set_aside
+from harness.study.store import ASIDE, ROWS, RowFile, read_rows, replace_rows, set_aside
 from harness.study.study_file import Study
 from harness.study.task import Task
 from harness.study.worker import execute
@@ -148,9 +149,19 @@ def _run(
                 statuses[outcome.status] += 1
                 progress.update(statuses)
         finished = len(rows.rows) == len(study.tasks)
+        if finished:
+            _put_in_order(directory, study, rows.rows)
     finally:
         record.end(statuses, tasks=len(rows.rows) - before, interrupted=not finished)
     return Summary(directory, len(study.tasks), statuses, len(rows.rows) - before, stop.is_set())
+
+
+def _put_in_order(directory: Path, study: Study, rows: Sequence[Record]) -> None:
+    """Rows in the order of the tasks: a complete study is the same file whoever ran it."""
+    place = {task.key: number for number, task in enumerate(study.tasks)}
+    ordered = sorted(rows, key=lambda row: place[row["task"]])
+    if ordered != list(rows):
+        replace_rows(directory / ROWS, ordered)
 
 
 def _results(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from functools import cached_property
 
 import numpy as np
@@ -57,8 +56,3 @@ def _distance(points: Points, a: Points, b: Points) -> Points:
     part = np.clip((points - a) @ along / square, 0.0, 1.0) if square else np.zeros(len(points))
     result: Points = np.hypot(*(points - a - part[:, None] * along).T)
     return result
-
-
-def rounded(svg: bytes) -> bytes:
-    """The document with the paths' coordinates to a hundredth of a point."""
-    return re.sub(rb'\bd="[^"]*"', lambda path: re.sub(rb"(\.\d\d)\d+", rb"\1", path[0]), svg)

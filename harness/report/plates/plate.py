@@ -10,7 +10,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from harness.errors import UserError
-from harness.report.plates.curves import rounded
+from harness.report.slim import slim
 from harness.report.style import FORMATS, in_style, saved
 
 
@@ -59,4 +59,4 @@ def printed(plate: Plate, results: Path, form: str = "svg") -> tuple[bytes, str]
         figure = Figure(figsize=plate.size)
         caption = plate.draw(figure, results)
         picture = saved(figure, form)
-    return (rounded(picture) if form == "svg" else picture), caption
+    return (slim(picture.decode()).encode() if form == "svg" else picture), caption
