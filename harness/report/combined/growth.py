@@ -78,7 +78,7 @@ def _sentences(
         if len(part):
             best = part.iloc[0]
             yield (
-                f"In the {domain}, a polygon of the family {best['curve']} with n = {best['n']} "
+                f"In the {domain}, a polygon of the family {best['family']} with n = {best['n']} "
                 f"edges has {best['vertices']} vertices, certified: {number(best['per_edge'])} for "
                 f"each edge, {number(best['per_square'])}·n². No bound of c·n vertices holds with "
                 f"c below {number(best['per_edge'])}."
@@ -97,8 +97,8 @@ def _sentences(
     ]
     if random:
         yield (
-            f"The other {plural(len(random), 'curve')}, of random polygons, do not show it; an "
-            "experiment on these alone would have confirmed the expectation of linear growth."
+            f"The other {plural(len(random), 'curve')} do not show it at these sizes; a study "
+            "on random polygons in kernels alone would have confirmed the expectation."
         )
     yield f"{study.name}: {_tasks(study)} {control_sentence(study.groups)}"
 
@@ -129,6 +129,7 @@ def record_table(groups: Sequence[GroupGrowth], labels: Sequence[str]) -> pd.Dat
         records.append(
             {
                 "curve": label,
+                "family": analysed.group.key.family,
                 "domain": analysed.group.key.domain,
                 "n": n,
                 "cells": int(best["cells"]),
@@ -140,7 +141,17 @@ def record_table(groups: Sequence[GroupGrowth], labels: Sequence[str]) -> pd.Dat
                 "task": str(best["task"]),
             }
         )
-    columns = ["curve", "domain", "n", "cells", "edges", "vertices", "per_edge", "per_square"]
+    columns = [
+        "curve",
+        "family",
+        "domain",
+        "n",
+        "cells",
+        "edges",
+        "vertices",
+        "per_edge",
+        "per_square",
+    ]
     table = pd.DataFrame.from_records(records, columns=[*columns, "seed", "task"])
     ranks = table["domain"].map(DOMAINS.index)
     order = table.assign(rank=ranks).sort_values(
