@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 
 import generators
 from harness.cli.main import main
+from harness.diagram import build
 from harness.errors import UserError
 from harness.geometry.instance import Instance
 from harness.study.manifest import MANIFEST
@@ -203,6 +204,26 @@ def test_another_view_is_an_exact_quarter_turn(family: str, n: int, seed: int) -
     back = np.roll(turned.floats, -4 * (n // 2), axis=0)
     assert np.array_equal(back, instance.floats)
     assert another_view(instance).orientation == instance.orientation
+
+
+def test_a_way_that_fails_is_followed_by_another(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Very symmetric input defeats one subdivision and not the next."""
+    tried = []
+
+    def fail_at_first(*arguments: object) -> object:
+        tried.append(arguments[-1])
+        if len(tried) < 3:
+            raise UserError("halving does not end")
+        return build(*arguments)  # type: ignore[arg-type]  # handed on as they came
+
+    monkeypatch.setattr("harness.study.recount.build", fail_at_first)
+    (task,) = study('[[sweep]]\nfamily = "star"\nn = 16\n').tasks
+    assert recount("fast", task).counts == execute(task).counts
+    assert tried == [1, 2, 3]
+    monkeypatch.setattr("harness.study.recount.WAYS", ((True, 1),))
+    tried.clear()
+    with pytest.raises(UserError, match="halving does not end"):
+        recount("fast", task)
 
 
 def test_a_recount_finds_what_a_count_found() -> None:
