@@ -14,11 +14,11 @@ from harness.analysis import challenge as challenging
 from harness.analysis import planted as planting
 from harness.analysis.models import GREATEST_SHARE, LEAST_SHARE
 from harness.analysis.statistics import RESAMPLES
-from harness.report import figures, provenance, summary, tables, weaves
+from harness.report import figures, provenance, summary, tables
 from harness.report.build import REPORT, StudyGrowth
+from harness.report.chapters import Part, chapters
 from harness.report.examples import Example, example
 from harness.report.labels import number, percent, plain, sizes
-from harness.report.parts import Part
 from harness.report.sections import Cell, Download, Section, Table, section
 from harness.report.style import inline, render
 from harness.report.verdicts import domain_rank, domains, verdict_cell
@@ -45,9 +45,9 @@ def outputs(study: StudyGrowth) -> dict[str, str]:
         files.update({panel.figure_path: panel.document for panel in part.panels})
         files.update({download.path: download.text for download in part.downloads})
     files.update({download.path: download.text for download in downloads.values()})
-    special = weaves.parts(study.groups)
-    for extra in special:
-        files.update(extra.files)
+    special = chapters(study.groups)
+    for chapter in special:
+        files.update(chapter.files)
     files[REPORT] = _page(study, sections, checks, downloads, overviews, examples, special)
     return files
 
@@ -83,11 +83,11 @@ def _page(
             domains=domains(study.groups),
             control_sentence=summary.control_sentence(study.groups),
             overviews={figure["slug"]: figure for figure in overviews},
-            special=special,
             controls=_control_table(study),
             checks=[_check_view(check, labels) for check, labels in checks],
             families=list(_families(study, sections, examples)),
             failures=_failure_table(study),
+            special=special,
             downloads=downloads,
             method=method_facts(),
             provenance=provenance.entries(study.manifest),
