@@ -100,6 +100,8 @@ def _edge_through(found: PlanarMap, mark: Floats) -> tuple[Edge, Floats] | None:
         return None
     edge, points = best
     near = np.hypot(*(points - mark).T) <= 3 * size  # an unbounded edge goes on for ever
+    for end in shape:  # where the angle has no value
+        near &= np.hypot(*(points - end).T) > 1e-3 * size
     points = points[near]
     return edge, points[:: max(1, len(points) // 400)]
 
