@@ -80,7 +80,7 @@ def check_two_segments(instance: Instance) -> Finding:
     if instance.n != 2 or instance.kind != "segments" or not cases.disjoint(instance):
         return Finding("outside")
     segments = instance.rational_segments()
-    x, y = _search(instance.segments)
+    x, y = (round(value, 4) for value in _search(instance.segments))  # any point near by will do
     near = cotangents(segments, (Fraction(x), Fraction(y)))
     size = Fraction(float(np.abs(instance.segments).max()))
     far = (Fraction(x) + 1000 * size + 1000, Fraction(y) + 777 * size)
