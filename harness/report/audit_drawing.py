@@ -135,6 +135,9 @@ def growth_svg(series: Sequence[Record]) -> str:
             guide = top * (np.array([low, high]) / high) ** slope
             axes.loglog([low, high], guide, style, color=GREY, lw=0.9, label=f"slope {slope}")
         axes.set_ylim(bottom=0.8)
+        ticks = [2**k for k in range(20) if low <= 2**k <= high]
+        axes.set_xticks(ticks, [str(tick) for tick in ticks])
+        axes.minorticks_off()
         axes.set_xlabel("n")
         axes.set_ylabel(f"{series[0]['title']} (most at each n)")
         axes.grid(visible=True)
