@@ -109,10 +109,10 @@ LINEAR_QUOTE = (
 )
 LINEAR_LIMITS = (
     "An instance above the threshold is proved to be there (certified counts), but by itself "
-    "refutes only this threshold, no asymptotic statement. Against linear growth speaks that the "
-    "certified counts of the weaves fit n² over all sizes tried, at a steady number of vertices "
-    "per n² and a number per edge that doubles with n (see the table); random families do not "
-    "show it. No finite list of counts is a proof about all n."
+    "refutes only this threshold, no asymptotic statement. Against linear growth speaks every "
+    "family below whose certified counts fit n²: the number of vertices per n² is steady, and the "
+    "number per edge (vertices/n) grows in proportion to n. Other families may well be linear or "
+    "less; the claim is about all polygons. No finite list of counts is a proof about all n."
 )
 
 CLAIMS = (
@@ -132,7 +132,7 @@ CLAIMS = (
         arithmetic=CERTIFIED,
         limits=(
             "Neither a proof nor, if it failed, a refutation: the theorem is about all n. The "
-            "table shows that no family tried grows faster than n²."
+            "tables show the counts per n² of each family."
         ),
         cases=cases.together(
             (cases.lattice_segments(1, 2, 3, 4), 0.5),

@@ -302,7 +302,7 @@ CLAIMS = (
         gloss="θ is a convex function on each edge",
         quote=QUOTE,
         reading=(
-            "θ_min is a convex function of the position along a Voronoi edge, in any "
+            "Along a Voronoi edge θ_min is a convex function of the position, in some "
             "parametrisation: in particular it has no strict local maximum inside the edge. (The "
             "proof shows the contrary, that θ is greatest where the circles touch: what is meant "
             "is unimodality.)"

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from fractions import Fraction
 
 import numpy as np
 import numpy.typing as npt
 
 from harness.audit import cases
-from harness.audit.angles import cotangents
+from harness.audit.angles import as_doubles, cotangents
 from harness.audit.claim import Claim, Finding, as_facts
 from harness.audit.diagrams import diagram
+from harness.geometry.coordinates import Point
 from harness.geometry.instance import Instance
 from harness.geometry.visual_angle import cot_visual_angle
 
@@ -74,29 +76,42 @@ def _search(segments: Floats) -> tuple[float, float]:
 def check_two_segments(instance: Instance) -> Finding:
     """The point of greatest least angle of two segments does not see the least greatest one.
 
-    A point far away sees both segments under less than the best of the points between them sees
-    the smaller one: then the greatest angle is not least where the least is greatest.
+    If a point sees both segments under more than another far away sees either, so does the best
+    point: its greatest angle is not the least.
     """
     if instance.n != 2 or instance.kind != "segments" or not cases.disjoint(instance):
         return Finding("outside")
     segments = instance.rational_segments()
-    x, y = _search(instance.segments)
-    near = cotangents(segments, (Fraction(x), Fraction(y)))
-    size = Fraction(float(np.abs(instance.segments).max()))
-    far = (Fraction(x) + 1000 * size + 1000, Fraction(y) + 777 * size)
-    there = cotangents(segments, far)
-    if near is None or there is None:
-        return Finding("undecided", "a test point is an end point of a segment")
-    facts = as_facts(least_near=max(near), greatest_far=min(there))
-    if min(there) > max(near):
+    ends = [p for s in segments for p in s]
+    near = [(max(seen), p) for p in _between(ends) if (seen := cotangents(segments, p))]
+    if not near:
+        return Finding("undecided", "all test points are end points")
+    best, p = min(near)
+    size = max(abs(x) for end in ends for x in end) + 1
+    there = cotangents(segments, (1000 * size, 777 * size)) or [best]
+    facts = as_facts(least_near=best, greatest_far=min(there))
+    if min(there) > best:
         return Finding(
             "fails",
-            f"({x:.4g}, {y:.4g}) sees both under cot θ ≤ {float(max(near)):.4g}, a point far away "
-            f"sees both under cot θ ≥ {float(min(there)):.4g}",
+            f"({float(p[0]):.4g}, {float(p[1]):.4g}) sees both under cot θ ≤ {float(best):.4g}, a "
+            f"point far away sees both under cot θ ≥ {float(min(there)):.4g}",
             facts,
-            ((x, y),),
+            (as_doubles(p),),
         )
     return Finding("holds", "no such point was found", facts)
+
+
+def _between(ends: list[Point]) -> Iterator[Point]:
+    """Some points among others: averages, with one of them counted up to three times."""
+    for extra in (0, 1, 2):
+        for k in range(len(ends)):
+            weights = [1 + extra * (j == k) for j in range(len(ends))]
+            yield (
+                sum((w * e[0] for w, e in zip(weights, ends, strict=True)), Fraction(0))
+                / sum(weights),
+                sum((w * e[1] for w, e in zip(weights, ends, strict=True)), Fraction(0))
+                / sum(weights),
+            )
 
 
 CLAIMS = (

@@ -68,6 +68,8 @@ class Workers:
                 yield future.result()
             except TimeoutError:
                 yield Finding("undecided", f"not finished in {LIMIT:g} s")
+            except pebble.ProcessExpired as death:
+                yield Finding("undecided", f"the process ended with exit code {death.exitcode}")
 
 
 def _ignore_interrupts() -> None:

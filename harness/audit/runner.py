@@ -49,19 +49,26 @@ def run_audit(
     """
     directory.mkdir(parents=True, exist_ok=True)
     with locked(directory), Workers(jobs) as workers:
-        write_manifest(directory, command, seed)
+        known = read_verdicts(directory) if resume else {}
+        kept = [claim for claim in claims if _is_done(known.get(claim.name), claim, count, seed)]
+        anew = [claim.name for claim in claims if claim not in kept]
+        write_manifest(directory, command, seed, anew)
         for claim in claims:
-            wanted = count or claim.count
-            known = read_verdicts(directory).get(claim.name)
-            if resume and known and (known["count"], known["seed"]) == (wanted, seed):
-                tell(claim, known)
+            if claim in kept:
+                tell(claim, known[claim.name])
                 continue
             tell(claim, None)
-            record, rows, example = try_claim(claim, wanted, seed, workers)
+            record, rows, example = try_claim(claim, count or claim.count, seed, workers)
             text = None if example is None else example.to_json()
             write_claim(directory, record, rows, text, order)
             tell(claim, record)
         return read_verdicts(directory)
+
+
+def _is_done(record: Record | None, claim: Claim, count: int | None, seed: int) -> bool:
+    """Whether a claim was finished with this count and seed."""
+    wanted = (count or claim.count, seed)
+    return record is not None and (record["count"], record["seed"]) == wanted
 
 
 def try_claim(

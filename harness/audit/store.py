@@ -92,23 +92,38 @@ def write_claim(
     replace(directory / VERDICTS, as_json(ordered).encode())
 
 
-def write_manifest(directory: Path, command: str, seed: int) -> None:
-    """Say what made the rows."""
+def write_manifest(directory: Path, command: str, seed: int, replaced: Sequence[str]) -> None:
+    """Say what made the rows: this run, and earlier ones of whose claims some are kept.
+
+    ``replaced``: the claims that this run tries anew.
+    """
     from harness.study.manifest import git_commit, machine, versions
     from harness.study.task import SEED_RULE
 
+    earlier = _runs(directory) if set(read_verdicts(directory)) - set(replaced) else []
+    commit = git_commit()
+    run = {"command": command, "base_seed": seed, "avd": harness.__version__, "commit": commit}
     manifest = {
         "study": "audit",
         "description": "The paper's statements as executable checks",
         "avd": harness.__version__,
-        "commit": git_commit(),
+        "commit": commit,
         "versions": versions(),
         "machine": machine(),
-        "command": command,
-        "base_seed": seed,
         "seeds": SEED_RULE,
+        "runs": [*earlier, run],
     }
     replace(directory / MANIFEST, as_json(manifest).encode())
+
+
+def _runs(directory: Path) -> list[Any]:
+    """The runs that a manifest knows; none if it cannot be read."""
+    try:
+        manifest = json.loads((directory / MANIFEST).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return []
+    runs = manifest.get("runs") if isinstance(manifest, dict) else None
+    return runs if isinstance(runs, list) else []
 
 
 def as_json(value: Mapping[str, Any]) -> str:

@@ -45,7 +45,7 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "--count",
         metavar="N",
         type=_positive,
-        help="instances of each claim (default: 14 to 600, as the claim has it)",
+        help="instances of each claim, besides series of growing n (default: the claim's own)",
     )
     parser.add_argument(
         "--seed", metavar="S", type=_whole, default=0, help="other instances (default: 0)"

@@ -100,6 +100,8 @@ def _edge_through(found: PlanarMap, mark: Floats) -> tuple[Edge, Floats] | None:
         return None
     edge, points = best
     near = np.hypot(*(points - mark).T) <= 3 * size  # an unbounded edge goes on for ever
+    for end in shape:  # where the angle has no value
+        near &= np.hypot(*(points - end).T) > 1e-3 * size
     points = points[near]
     return edge, points[:: max(1, len(points) // 400)]
 
@@ -133,6 +135,9 @@ def growth_svg(series: Sequence[Record]) -> str:
             guide = top * (np.array([low, high]) / high) ** slope
             axes.loglog([low, high], guide, style, color=GREY, lw=0.9, label=f"slope {slope}")
         axes.set_ylim(bottom=0.8)
+        ticks = [2**k for k in range(20) if low <= 2**k <= high]
+        axes.set_xticks(ticks, [str(tick) for tick in ticks])
+        axes.minorticks_off()
         axes.set_xlabel("n")
         axes.set_ylabel(f"{series[0]['title']} (most at each n)")
         axes.grid(visible=True)

@@ -214,3 +214,17 @@ def test_no_process_is_left_behind() -> None:
     with pytest.raises(KeyboardInterrupt), Workers(2):
         raise KeyboardInterrupt
     assert multiprocessing.active_children() == []
+
+
+def dies(_instance) -> Finding:
+    """Ends its process."""
+    import os
+
+    os._exit(3)
+
+
+def test_a_process_that_dies_leaves_its_instance_undecided() -> None:
+    with Workers(2) as workers:
+        (found,) = workers.findings(dies, [SQUARE])
+    assert found.outcome == "undecided"
+    assert "3" in found.message

@@ -29,7 +29,10 @@ def test_an_audit_is_run_reported_and_reported_again(tmp_path, capsys) -> None:
     assert main(["report", str(out)]) == 0
     assert (out / "report.html").read_bytes() == page
     assert "lemma-4-convex: " in capsys.readouterr().out
-    assert json.loads((out / "manifest.json").read_text())["command"].startswith("avd audit")
+    commands = [r["command"] for r in json.loads((out / "manifest.json").read_text())["runs"]]
+    assert [command.endswith("--resume") for command in commands] == [False, True]
+    assert main(words) == 0  # everything anew: earlier runs have no part in it
+    assert len(json.loads((out / "manifest.json").read_text())["runs"]) == 1
 
 
 def test_an_unknown_claim_is_refused_in_one_line(capsys) -> None:
