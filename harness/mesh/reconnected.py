@@ -30,12 +30,12 @@ def improve_flipping(state: State, sweeps: int) -> None:
 
     First by moves alone, which is enough for some meshes.  Then, from the start: the degrees of
     the whole mesh are evened out, with soft sweeps between; the stages of fixed connectivity
-    follow.  From the better of the two (see ``CLOSE``), flips are tried one by one around the
-    worst vertices.  What comes out is not below the input in lexicographic order.
+    follow, and flips are tried one by one around the worst vertices.  If that is no better (see
+    ``CLOSE``) than moves alone, flips are tried from there.  What comes out is not below the input
+    in lexicographic order.
     """
     begin, before = state.kept(), state.least
-    stars = (*state.stars, state.x, state.y)
-    ideal = ideal_degrees(*stars)
+    ideal = ideal_degrees(*state.stars, state.x, state.y)
     improve_all(state, sweeps)
     moved, after = state.kept(), state.least
     if state.is_late:
@@ -43,19 +43,13 @@ def improve_flipping(state: State, sweeps: int) -> None:
     state.restore(begin)
     _even_out(state, ideal)
     improve_all(state, sweeps)
-    if not _is_better(state.least, after):
-        state.restore(moved)
-    state.reconnect(lawson(*stars))
+    _try_flips(state, ideal, EFFORT * sweeps)
+    if _is_better(state.least, after) and rises(before, state.least):
+        return
+    state.restore(moved)
     _try_flips(state, ideal, EFFORT * sweeps)
     if not (_is_better(state.least, after) and rises(before, state.least)):
-        state.restore(moved if rises(before, after) else begin)
-
-
-def _is_better(new: Floats, old: Floats) -> bool:
-    """Whether sorted least angles are better: a greater first one, or if close a greater mean."""
-    if abs(new[0] - old[0]) > CLOSE:
-        return bool(new[0] > old[0])
-    return bool(new.mean() > old.mean())
+        state.restore(moved)
 
 
 def _even_out(state: State, ideal: Ints) -> None:
@@ -69,6 +63,13 @@ def _even_out(state: State, ideal: Ints) -> None:
             state.sweep(soft_sweep, SOFT if round_ < 2 else GENTLE)
         state.reconnect(even_out(*stars, ideal, FLOOR))
         state.record("degrees")
+
+
+def _is_better(new: Floats, old: Floats) -> bool:
+    """Whether sorted least angles are better: a greater first one, or if close a greater mean."""
+    if abs(new[0] - old[0]) > CLOSE:
+        return bool(new[0] > old[0])
+    return bool(new.mean() > old.mean())
 
 
 def improve_fully(state: State, sweeps: int) -> None:
@@ -92,7 +93,8 @@ def improve_fully(state: State, sweeps: int) -> None:
 
 
 def _try_flips(state: State, ideal: Ints, sweeps: int) -> None:
-    """Flips with smoothing, in portions, so that the time limit is heeded."""
+    """Lawson's flips, and flips with smoothing, in portions, so that the time limit is heeded."""
+    state.reconnect(lawson(*state.stars, state.x, state.y))
     waiting = state.free.copy()
     left = sweeps * len(state.order)
     arrays = (*state.stars, state.free, state.x, state.y, ideal, TARGET)

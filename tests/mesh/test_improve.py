@@ -98,6 +98,18 @@ def test_the_result_does_not_depend_on_the_workers(workers) -> None:
     assert (one.points == more.points).all()
 
 
+@pytest.mark.parametrize(
+    "options",
+    [{"objective": "combined"}, {"objective": "apex"}, {"topology": "flip"}, {"topology": "full"}],
+)
+def test_nor_does_that_of_the_other_methods(options) -> None:
+    points, triangles = random_mesh(1500)
+    one = improve(points, triangles, sweeps=3, workers=1, **options)
+    more = improve(points, triangles, sweeps=3, workers=2, **options)
+    assert (one.points == more.points).all()
+    assert (one.triangles == more.triangles).all()
+
+
 def test_random_meshes_reach_what_is_asked() -> None:
     better = improve(*random_mesh(1000))
     assert better.after.smallest >= 29.5
