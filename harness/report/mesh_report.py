@@ -186,7 +186,8 @@ def _figures(rows: Sequence[Row]) -> dict[str, Drawn]:
             partial(mesh_figures.draw_sweeps, lines=histories),
             12,
             3.6,
-            f"After each sweep, or as much work as a sweep's: {where}.",
+            f"After each sweep, or as much work as a sweep's: {where}. Where edges may change, "
+            "moves alone come first and everything begins anew.",
         )
         figures[f"seconds-{family}"] = (
             partial(mesh_figures.draw_times, times=_times(mine)),

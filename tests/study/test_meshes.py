@@ -12,7 +12,7 @@ from harness.analysis.meshes import answer, findings
 from harness.errors import UserError
 from harness.mesh import improve, quality_of
 from harness.report.mesh_report import write_mesh_report
-from harness.study import mesh_runner
+from harness.study import load, mesh_runner
 from harness.study.interrupt import interruptible
 from harness.study.manifest import read_manifest
 from harness.study.mesh_rows import append_row, is_mesh_study, read_meshes, write_rows
@@ -189,6 +189,8 @@ def test_strange_rows_are_refused(tmp_path, rows) -> None:
         with pytest.raises(UserError, match=f"line 3: {column}: '{value}'"):
             read_meshes(tmp_path)
     write_rows(tmp_path / "rows.csv", [])
+    with pytest.raises(UserError, match="read_meshes reads its rows"):
+        load(tmp_path)
     with pytest.raises(UserError, match="no finished rows"):
         write_mesh_report(tmp_path)
 
