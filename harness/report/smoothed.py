@@ -42,7 +42,7 @@ def smoothed(
     views, figures, downloads = [], [], [download]
     for family, shape, rows, found in noisy:
         name = f"smoothed-{family}-{shape:.3g}"
-        points = Download(f"{name}", f"data/{name}.csv", tables.to_csv(_points(rows)))
+        points = Download(f"{name}", f"data/{name}.csv", tables.to_csv(points_of(rows)))
         table = tables.from_csv(points.text)
         transition = {n: estimate.value for n, estimate in found.transition}
         title = f"{family}, {SHAPES[family][0]} = {shape:.4g}"
@@ -81,6 +81,8 @@ def smoothed(
         views.append(
             {
                 "title": title,
+                "family": family,
+                "exponent": found.exponent,
                 "sentences": list(_sentences(found)),
                 "figures": drawn,
                 "download": points,
@@ -97,7 +99,7 @@ def smoothed(
     )
 
 
-def _points(rows: pd.DataFrame) -> pd.DataFrame:
+def points_of(rows: pd.DataFrame) -> pd.DataFrame:
     """Median and quartiles of the share at every n and noise."""
     records = []
     for (n, noise), part in rows[rows["noise"] > 0].groupby(["n", "noise"], sort=True):

@@ -51,7 +51,7 @@ def _prediction(table: pd.DataFrame, download: Download) -> Part:
             f"figures/weave-{family}.svg",
             render(
                 partial(
-                    weave_figures.against_prediction, table=part, curves=_predicted(family, part)
+                    weave_figures.against_prediction, table=part, curves=predicted(family, part)
                 ),
                 8.6,
                 3.6,
@@ -72,6 +72,7 @@ def _prediction(table: pd.DataFrame, download: Download) -> Part:
         "weave.html",
         {
             "summary": _summary(table),
+            "unexplained": int((table["finding"] == "unexplained").sum()),
             "findings": _findings_table(table),
             "largest": _largest_table(generic),
             "symmetric": _symmetric_table(table[table["noise"] == 0]),
@@ -87,7 +88,7 @@ def _prediction(table: pd.DataFrame, download: Download) -> Part:
     )
 
 
-def _predicted(family: object, part: pd.DataFrame) -> pd.DataFrame:
+def predicted(family: object, part: pd.DataFrame) -> pd.DataFrame:
     """The prediction on a fine grid of shapes, for the sizes that were counted."""
     name = str(family)
     low, high = float(part["shape"].min()), float(part["shape"].max())
