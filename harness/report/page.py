@@ -17,6 +17,7 @@ from harness.analysis.statistics import RESAMPLES
 from harness.analysis.verdict import LinearClaim
 from harness.report import figures, provenance, summary, tables
 from harness.report.build import REPORT, StudyGrowth
+from harness.report.chapters import Part, chapters
 from harness.report.examples import Example, example
 from harness.report.labels import bracket, number, percent, plain, sizes
 from harness.report.sections import Cell, Download, Section, Table, cell, section
@@ -51,7 +52,10 @@ def outputs(study: StudyGrowth) -> dict[str, str]:
         files.update({panel.figure_path: panel.document for panel in part.panels})
         files.update({download.path: download.text for download in part.downloads})
     files.update({download.path: download.text for download in downloads.values()})
-    files[REPORT] = _page(study, sections, checks, downloads, overviews, examples)
+    special = chapters(study.groups)
+    for chapter in special:
+        files.update(chapter.files)
+    files[REPORT] = _page(study, sections, checks, downloads, overviews, examples, special)
     return files
 
 
@@ -62,6 +66,7 @@ def _page(
     downloads: dict[str, Download],
     overviews: list[dict[str, str]],
     examples: Mapping[str, Example | None],
+    special: list[Part],
 ) -> str:
     environment = Environment(
         loader=PackageLoader("harness.report"),
@@ -84,6 +89,7 @@ def _page(
             checks=[_check_view(check, labels) for check, labels in checks],
             families=list(_families(study, sections, examples)),
             failures=_failure_table(study),
+            special=special,
             downloads=downloads,
             method=_method(),
             provenance=provenance.entries(study.manifest),
