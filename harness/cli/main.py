@@ -16,7 +16,20 @@ if TYPE_CHECKING:
 
 #: The verbs in the order in which a newcomer meets them; each is a module of this room with
 #: ``register(subparsers)`` and ``run(args) -> int``.
-VERBS = ("count", "draw", "peak", "mesh", "generate", "families", "study", "report", "bench")
+VERBS = (
+    "count",
+    "draw",
+    "peak",
+    "mesh",
+    "generate",
+    "families",
+    "study",
+    "verify",
+    "report",
+    "audit",
+    "figures",
+    "bench",
+)
 
 EPILOG = """\
 standard output is data, standard error is messages and progress

@@ -29,11 +29,14 @@ def build(
     objective: Objective = "smallest",
     builder: str = BUILDERS[0],
     workers: int | None = None,
+    subdivision: int = 0,
 ) -> PlanarMap:
     """The angular Voronoi diagram of a validated instance.
 
     ``domain`` defaults to ``kernel`` for a polygon and ``plane`` for segments.  ``workers``:
     threads of the fast builder, by default one per processor; the map does not depend on it.
+    ``subdivision``: another number (0, 1, 2, …) makes the fast builder cut the domain into other
+    triangles, so that a count can be made again in another way; the diagram is the same.
 
     Raises:
         UserError: an unknown builder; an instance so degenerate that the fast builder cannot
@@ -46,7 +49,7 @@ def build(
     domain = domain or default_domain(instance.kind)
     corners = domain_corners(instance, domain)
     if builder == "fast":
-        return _fast_or_reference(instance, domain, objective, corners, workers)
+        return _fast_or_reference(instance, domain, objective, corners, workers, subdivision)
     from harness.diagram.reference import build_reference
 
     return build_reference(instance, domain, objective, corners)
@@ -58,6 +61,7 @@ def _fast_or_reference(
     objective: Objective,
     corners: list[Point],
     workers: int | None,
+    subdivision: int,
 ) -> PlanarMap:
     """The fast builder's map; of a small instance that it cannot certify, the reference's.
 
@@ -76,7 +80,7 @@ def _fast_or_reference(
     try:
         if not has_plain_size(instance):
             raise Contradiction("coordinates beyond the middle of the range of doubles")
-        return build_fast(instance, domain, objective, corners, workers)
+        return build_fast(instance, domain, objective, corners, workers, subdivision)
     except Contradiction as problem:
         if instance.n > MOST_HANDED_OVER:
             raise UserError(

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from harness.analysis import GroupGrowth
+from harness.report.slim import slim
 from harness.report.style import inline
 
 if TYPE_CHECKING:
@@ -89,4 +90,16 @@ def _drawn(analysed: GroupGrowth, row: dict[str, Any], diagram: PlanarMap) -> Ex
 
 def _coarse(svg: str) -> str:
     """The document with the paths' coordinates to a tenth of a point: nobody sees more."""
-    return re.sub(r'\bd="[^"]*"', lambda path: re.sub(r"(\.\d)\d+", r"\1", path[0]), svg)
+    return slim(re.sub(r'\bd="([^"]*)"', lambda path: f'd="{_coarse_path(path[1])}"', svg))
+
+
+def _coarse_path(path: str) -> str:
+    """The path, without the lines that are then of no length."""
+    commands = re.sub(r"(\.\d)\d+", r"\1", path).split("\n")
+    kept: list[str] = []
+    last: list[str] = []
+    for command in commands:
+        if not (command.startswith("L") and command[1:].split() == last):
+            kept.append(command)
+        last = command[1:].split()
+    return "\n".join(kept)

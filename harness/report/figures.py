@@ -71,8 +71,9 @@ def _complexity(
             color=GREY,
             fontsize=8,
         )
-    if len(rows) <= DOTS:
-        axes.plot(rows["n"], rows[count], ".", color=GREY, alpha=0.35, ms=3, zorder=1)
+    dots = rows[["n", count]].drop_duplicates()
+    if len(dots) <= DOTS:
+        axes.plot(dots["n"], dots[count], ".", color=GREY, alpha=0.5, ms=3, zorder=1)
     for statistic, label in shown.items():
         colour, marker, line = SHOWN[statistic]
         part = curves[curves["statistic"] == statistic]

@@ -14,21 +14,15 @@ from harness.analysis import challenge as challenging
 from harness.analysis import planted as planting
 from harness.analysis.models import GREATEST_SHARE, LEAST_SHARE
 from harness.analysis.statistics import RESAMPLES
-from harness.analysis.verdict import LinearClaim
 from harness.report import figures, provenance, summary, tables
 from harness.report.build import REPORT, StudyGrowth
+from harness.report.chapters import Part, chapters
 from harness.report.examples import Example, example
-from harness.report.labels import bracket, number, percent, plain, sizes
-from harness.report.sections import Cell, Download, Section, Table, cell, section
+from harness.report.labels import number, percent, plain, sizes
+from harness.report.sections import Cell, Download, Section, Table, section
 from harness.report.style import inline, render
-
-#: What becomes of linear growth, short enough for a table.
-SHORT: dict[LinearClaim, str] = {
-    "faster": "faster",
-    "possible": "possible",
-    "slower": "slower",
-    "undecided": "not decided",
-}
+from harness.report.verdicts import domain_rank, domains, verdict_cell
+from harness.study.worker import MOST_EDGES
 
 
 def outputs(study: StudyGrowth) -> dict[str, str]:
@@ -51,8 +45,22 @@ def outputs(study: StudyGrowth) -> dict[str, str]:
         files.update({panel.figure_path: panel.document for panel in part.panels})
         files.update({download.path: download.text for download in part.downloads})
     files.update({download.path: download.text for download in downloads.values()})
-    files[REPORT] = _page(study, sections, checks, downloads, overviews, examples)
+    special = chapters(study.groups)
+    for chapter in special:
+        files.update(chapter.files)
+    files[REPORT] = _page(study, sections, checks, downloads, overviews, examples, special)
     return files
+
+
+def environment() -> Environment:
+    """Where the templates of the pages are found."""
+    return Environment(
+        loader=PackageLoader("harness.report"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
 
 
 def _page(
@@ -62,30 +70,26 @@ def _page(
     downloads: dict[str, Download],
     overviews: list[dict[str, str]],
     examples: Mapping[str, Example | None],
+    special: list[Part],
 ) -> str:
-    environment = Environment(
-        loader=PackageLoader("harness.report"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
     manifest = study.manifest or {}
     return (
-        environment.get_template("report.html").render(
+        environment()
+        .get_template("report.html")
+        .render(
             name=study.name,
             description=str(manifest.get("description") or ""),
             tasks=summary.tasks_sentence(study.groups, study.planned),
-            claims=summary.by_linear_claim(study.groups, study.labels),
+            domains=domains(study.groups),
             control_sentence=summary.control_sentence(study.groups),
-            overviews=overviews,
-            verdicts=_verdict_table(study),
+            overviews={figure["slug"]: figure for figure in overviews},
             controls=_control_table(study),
             checks=[_check_view(check, labels) for check, labels in checks],
             families=list(_families(study, sections, examples)),
             failures=_failure_table(study),
+            special=special,
             downloads=downloads,
-            method=_method(),
+            method=method_facts(),
             provenance=provenance.entries(study.manifest),
             study_file=study.study_file,
         )
@@ -97,7 +101,8 @@ def _download(title: str, table: pd.DataFrame) -> Download:
     return Download(title, f"data/{title}.csv", tables.to_csv(table))
 
 
-def _method() -> dict[str, str]:
+def method_facts() -> dict[str, str]:
+    """The numbers that the text about the method names."""
     return {
         "level": percent(challenging.LEVEL),
         "confirming": percent(challenging.CONFIRMING_LEVEL),
@@ -107,6 +112,7 @@ def _method() -> dict[str, str]:
         "greatest_share": number(GREATEST_SHARE),
         "resamples": str(RESAMPLES),
         "trials": str(planting.TRIALS),
+        "most_edges": f"{MOST_EDGES:,}",
     }
 
 
@@ -117,12 +123,14 @@ def _overviews(download: Download) -> Iterator[dict[str, str]]:
     table = tables.from_csv(download.text)
     for (domain, objective), part in table.groupby(["domain", "objective"], sort=True):
         curves = len(set(part["curve"]))
+        short = part.assign(curve=part["curve"].str.replace(f", {domain}", ""))  # all are
         document = render(
-            partial(figures.overview, table=part), 4.8, figures.overview_height(curves)
+            partial(figures.overview, table=short), 4.8, figures.overview_height(curves)
         )
         name = f"overview-{domain}-{objective}"
         text = f"Maximum number of vertices per segment, {domain}, {objective} visual angle"
         yield {
+            "slug": f"{domain}-{objective}",
             "path": f"figures/{name}.svg",
             "document": document,
             "svg": inline(document, name, text),
@@ -133,48 +141,6 @@ def _overviews(download: Download) -> Iterator[dict[str, str]]:
 # --- tables of the whole study -----------------------------------------------------------------
 
 
-def _verdict_table(study: StudyGrowth) -> Table:
-    head = ["curve", "n", "repl.", "vertices, max.", "vertices, median", "exponent, max."]
-    head += ["linear?", "edges, max.", "cells, max.", "failed"]
-    rows = []
-    for analysed, label in zip(study.groups, study.labels, strict=True):
-        group, curves = analysed.group, analysed.curves
-        maximum = curves["vertices", "maximum"]
-        power = maximum.power
-        claim = maximum.verdict.linear_claim
-        failed = sum(len(size.rows) - len(size.counted) for size in group.sizes)
-        rows.append(
-            [
-                Cell(label, label, f"#{group.key.slug}"),
-                Cell(
-                    sizes([float(maximum.n[0]), float(maximum.n[-1])]).replace(", ", " … ")
-                    if len(maximum.n)
-                    else "–",
-                    number(float(len(maximum.n))),
-                ),
-                cell(float(max(len(size.rows) for size in group.sizes))),
-                _verdict_cell(analysed, "vertices", "maximum"),
-                _verdict_cell(analysed, "vertices", "median"),
-                Cell(
-                    f"{number(power.exponent)} {bracket(power.low, power.high)}".strip(),
-                    "" if power.exponent is None else f"{power.exponent:.9g}",
-                ),
-                Cell(SHORT[claim], claim, claim),
-                _verdict_cell(analysed, "edges", "maximum"),
-                _verdict_cell(analysed, "cells", "maximum"),
-                Cell(str(failed) if failed else "", str(failed), "warn" if failed else ""),
-            ]
-        )
-    return Table("Verdicts", head, rows)
-
-
-def _verdict_cell(analysed: GroupGrowth, headline: str, statistic: Any) -> Cell:
-    verdict = analysed.curves[headline, statistic].verdict
-    kept = [model for model in MODELS if model in verdict.kept]
-    rank = MODELS.index(kept[0]) if kept else len(MODELS)
-    return Cell(verdict.label, str(rank), f"verdict {verdict.kind}")
-
-
 def _control_table(study: StudyGrowth) -> Table:
     labels = dict(zip((id(group) for group in study.groups), study.labels, strict=True))
     kinds = {"right": "good", "possible": "", "wrong": "bad", "undecided": ""}
@@ -182,9 +148,9 @@ def _control_table(study: StudyGrowth) -> Table:
         [
             Cell(labels[id(analysed)], labels[id(analysed)], f"#{analysed.group.key.slug}"),
             Cell(analysed.declared.model.symbol if analysed.declared else ""),
-            _verdict_cell(analysed, "vertices", "maximum"),
+            verdict_cell(analysed, "vertices", "maximum"),
             Cell(summary.CALLS[maximum], maximum, kinds[maximum]),
-            _verdict_cell(analysed, "vertices", "median"),
+            verdict_cell(analysed, "vertices", "median"),
             Cell(summary.CALLS[median], median, kinds[median]),
         ]
         for analysed, maximum, median in summary.controls(study.groups)
@@ -216,6 +182,8 @@ def _examples(study: StudyGrowth) -> dict[str, Example | None]:
     groups: dict[str, list[GroupGrowth]] = {}
     for analysed in study.groups:
         groups.setdefault(analysed.group.key.family, []).append(analysed)
+    for of_family in groups.values():
+        of_family.sort(key=lambda analysed: domain_rank(analysed.group.key.domain))
     return {name: example(of_family) for name, of_family in groups.items()}
 
 
@@ -228,14 +196,17 @@ def _families(
         family = FAMILIES.get(name)
         yield {
             "name": name,
-            "summary": family.summary if family else "",
+            "summary": family.summary[:1].upper() + family.summary[1:] if family else "",
             "source": family.source if family else "",
             "example": examples[name],
-            "sections": [
-                part
-                for part, analysed in zip(sections, study.groups, strict=True)
-                if analysed.group.key.family == name
-            ],
+            "sections": sorted(
+                (
+                    part
+                    for part, analysed in zip(sections, study.groups, strict=True)
+                    if analysed.group.key.family == name
+                ),
+                key=lambda part: domain_rank(part.domain),
+            ),
         }
 
 

@@ -86,6 +86,7 @@ class Section:
 
     slug: str
     label: str
+    domain: str
     parameters: str
     facts: Sequence[tuple[str, str]]
     panels: Sequence[Panel]
@@ -109,6 +110,7 @@ def section(analysed: GroupGrowth, label: str) -> Section:
     return Section(
         slug,
         label,
+        analysed.group.key.domain,
         parameters(analysed.group.key),
         list(_facts(analysed)),
         panels,

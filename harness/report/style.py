@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import hashlib
 import io
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any
 
 import matplotlib as mpl
 from matplotlib.figure import Figure
+
+from harness.report.slim import slim
 
 # The colour-blind-safe palette of Okabe and Ito (2008).
 BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
@@ -40,29 +44,54 @@ SETTINGS: dict[Any, object] = {
 }
 FALLBACK = "'DejaVu Sans', Verdana, Helvetica, sans-serif"
 
+FORMATS = ("svg", "png", "pdf")
+RESOLUTION = 200  # dots per inch of a PNG
+
+#: What would make two files of the same picture differ is left out.
+_NO_DATES: dict[str, dict[str, Any]] = {
+    "svg": dict.fromkeys(("Date", "Creator", "Format", "Type")),
+    "png": {"Software": None},
+    "pdf": dict.fromkeys(("CreationDate", "Creator", "Producer")),
+}
+
+
+def saved(figure: Figure, form: str) -> bytes:
+    """The bytes of a figure in one of the ``FORMATS``, under the settings in force."""
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format=form, dpi=RESOLUTION, metadata=_NO_DATES[form])
+    data = buffer.getvalue()
+    return data.replace(b"'DejaVu Sans'", FALLBACK.encode()) if form == "svg" else data
+
+
+@contextmanager
+def in_style(more: Mapping[Any, object] | None = None) -> Iterator[None]:
+    """The project's settings of matplotlib and ``more``; the user's are back afterwards."""
+    with mpl.rc_context():
+        mpl.rcdefaults()
+        mpl.rcParams.update(SETTINGS)
+        mpl.rcParams.update(dict(more or {}))
+        yield
+
 
 def render(draw: Callable[[Figure], None], width: float, height: float) -> str:
     """The SVG document of a figure, ``width`` × ``height`` inches, filled by ``draw``.
 
     Independent of the user's matplotlib settings, of the date and of figures drawn before.
     """
-    with mpl.rc_context():
-        mpl.rcdefaults()
-        mpl.rcParams.update(SETTINGS)
+    with in_style():
         figure = Figure(figsize=(width, height))
         draw(figure)
-        buffer = io.StringIO()
-        nothing = dict.fromkeys(("Date", "Creator", "Format", "Type"))
-        figure.savefig(buffer, format="svg", metadata=nothing)
-    return buffer.getvalue().replace("'DejaVu Sans'", FALLBACK)
+        return slim(saved(figure, "svg").decode())
 
 
 def inline(svg: str, prefix: str, description: str) -> str:
     """The SVG as an element of an HTML page.
 
-    Its ids get a prefix, since a page holds many figures; ``description`` is what a screen reader
-    says.  The prologue goes, and so does the fixed size: the page decides it.
+    Its ids get a prefix, made from ``prefix`` and short, since a page holds many figures;
+    ``description`` is what a screen reader says.  The prologue goes, and so does the fixed size:
+    the page decides it.
     """
+    prefix = "f" + hashlib.sha256(prefix.encode()).hexdigest()[:6]
     element = svg[svg.index("<svg") :]
     element = re.sub(r"<style type=\"text/css\">.*?</style>", "", element, count=1, flags=re.S)
     element = re.sub(r"<!--.*?-->\s*", "", element, flags=re.S)

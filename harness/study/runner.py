@@ -4,7 +4,8 @@ A study's directory holds::
 
     study.toml       the study file, verbatim, as of the last run
     manifest.json    where the rows come from (``manifest``)
-    rows.csv         a row for each finished task, in the order of completion (``store``)
+    rows.csv         a row for each finished task: in the order of completion while tasks are
+                     missing, in that of the study once it is complete (``store``)
     rows-aside.csv   rows of tasks that left the study or were run again
     failures.log     tracebacks and last words of the tasks that failed
     earlier/         what ``--fresh`` moved out of the way
@@ -29,11 +30,11 @@ from harness.study.interrupt import interruptible
 from harness.study.isolate import Work
 from harness.study.lock import LOCK, locked
 from harness.study.manifest import MANIFEST, RunRecord, read_manifest
-from harness.study.outcome import Outcome, row_of
+from harness.study.outcome import Outcome, one_line, row_of
 from harness.study.processors import default_jobs
 from harness.study.progress import Progress
 from harness.study.schema import Record
-from harness.study.store import ASIDE, ROWS, RowFile, read_rows, set_aside
+from harness.study.store import ASIDE, ROWS, RowFile, read_rows, replace_rows, set_aside
 from harness.study.study_file import Study
 from harness.study.task import Task
 from harness.study.worker import execute
@@ -93,10 +94,10 @@ def run_study(
     """
     if engine == "dask":
         check_dask()
-    _claim(directory)
+    claim(directory)
     with locked(directory):
         if mode == "fresh":
-            _move_to_earlier(directory)
+            move_to_earlier(directory)
         read_manifest(directory)  # refuse a newer one before anything is written
         plan = _plan(study, directory, retry=mode == "retry")
         if mode == "new" and plan.kept and not plan.is_noop:
@@ -144,13 +145,23 @@ def _run(
         ):
             for task, outcome in results:
                 rows.append(row_of(task, outcome))
-                _log_failure(directory, task, outcome)
+                log_failure(directory, f"{task.key} {task.family} n={task.n}", outcome)
                 statuses[outcome.status] += 1
                 progress.update(statuses)
         finished = len(rows.rows) == len(study.tasks)
+        if finished:
+            _put_in_order(directory, study, rows.rows)
     finally:
         record.end(statuses, tasks=len(rows.rows) - before, interrupted=not finished)
     return Summary(directory, len(study.tasks), statuses, len(rows.rows) - before, stop.is_set())
+
+
+def _put_in_order(directory: Path, study: Study, rows: Sequence[Record]) -> None:
+    """Rows in the order of the tasks: a complete study is the same file whoever ran it."""
+    place = {task.key: number for number, task in enumerate(study.tasks)}
+    ordered = sorted(rows, key=lambda row: place[row["task"]])
+    if ordered != list(rows):
+        replace_rows(directory / ROWS, ordered)
 
 
 def _results(
@@ -221,7 +232,7 @@ def _unfinished(study: Study, directory: Path, plan: _Plan, resume_command: str)
     )
 
 
-def _claim(directory: Path) -> None:
+def claim(directory: Path) -> None:
     """Make the directory, or make sure that it is a study's.  Raises UserError."""
     if directory.exists() and not directory.is_dir():
         raise UserError(f"{directory}: is not a directory")
@@ -231,7 +242,7 @@ def _claim(directory: Path) -> None:
         raise UserError(f"{directory}: the directory is not empty and holds no study")
 
 
-def _move_to_earlier(directory: Path) -> None:
+def move_to_earlier(directory: Path) -> None:
     """Move the study that is there into a directory of its own; nothing is deleted."""
     files = [directory / name for name in (ROWS, ASIDE, MANIFEST, STUDY, FAILURES)]
     stamp = datetime.now(UTC).strftime("%Y%m%dT%H%M%S.%fZ")
@@ -242,11 +253,11 @@ def _move_to_earlier(directory: Path) -> None:
         os.replace(file, target / file.name)
 
 
-def _log_failure(directory: Path, task: Task, outcome: Outcome) -> None:
+def log_failure(directory: Path, name: str, outcome: Outcome) -> None:
+    """Add to the failure log what a task that failed has left behind."""
     if outcome.status == "ok":
         return
-    row = row_of(task, outcome)
-    lines = [f"{task.key} {task.family} n={task.n} {outcome.status}: {row['message']}"]
+    lines = [f"{name} {outcome.status}: {one_line(outcome.message)}"]
     lines += [f"    {line}" for line in outcome.detail.splitlines()]
     with open(directory / FAILURES, "a", encoding="utf-8") as log:
         log.write("\n".join(lines) + "\n")

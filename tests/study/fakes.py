@@ -42,6 +42,12 @@ def quick(task: Task) -> Measurement:
     return Measurement(counts, time.perf_counter() % 1.0)
 
 
+def delayed_by_seed(task: Task) -> Measurement:
+    """As ``quick``, in up to 60 milliseconds: tasks overtake one another."""
+    time.sleep((task.seed % 13) * 0.005)
+    return quick(task)
+
+
 def slow_and_logged(log: Path, task: Task) -> Measurement:
     """As ``quick``, in up to 60 milliseconds, adding the task's key to ``log``; some fail."""
     time.sleep((task.seed % 13) * 0.005)

@@ -9,12 +9,14 @@ from pathlib import Path
 import pytest
 
 import harness.report
+from generators import FAMILIES
 from harness.cli.main import main
 from harness.errors import UserError
 from harness.study import find_study, load
 from harness.study.outcome import row_of
 from harness.study.store import ROWS, read_rows, replace_rows
 from harness.study.worker import SanityError, execute
+from tests.study import fakes
 from tests.study.studies import study
 
 SMALL = """\
@@ -123,7 +125,38 @@ def test_built_in_studies_are_listed(capsys: pytest.CaptureFixture[str]) -> None
     assert main(["study", "--list"]) == 0
     captured = capsys.readouterr()
     assert captured.err == ""
-    assert captured.out.startswith("quick\t")
+    names = [line.partition("\t")[0] for line in captured.out.splitlines()]
+    assert {"quick", "conjecture", "conjecture-small"} <= set(names)
+
+
+def test_a_study_in_two_sizes_is_two_files(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    small = SMALL.replace('"tiny"', '"tiny-small"').replace("[3, 4]", "3")
+    (here / "tiny-small.toml").write_text(small)
+    assert main(["study", "tiny.toml", "--scale", "small", "--no-report"]) == 0
+    assert len(load(here / "results" / "tiny-small")) == 3
+    assert (
+        '"command": "avd study tiny.toml --scale small --no-report"'
+        in (here / "results" / "tiny-small" / "manifest.json").read_text()
+    )
+    assert find_study("tiny.toml", "full") == find_study("tiny.toml")
+    assert find_study("conjecture", "small").name == "conjecture-small"
+    for words in (["tiny-small.toml", "--scale", "small"], ["quick", "--scale", "full"]):
+        with pytest.raises(SystemExit, match="2"):
+            main(["study", *words])
+        assert "has no scales" in capsys.readouterr().err
+
+
+def test_the_small_study_has_the_shape_of_the_full_one() -> None:
+    """The same families in the same domains, and every task is one of the full study's kind."""
+    small, full = find_study("conjecture", "small").tasks, find_study("conjecture").tasks
+    kinds = [{(task.family, task.params, task.domain) for task in tasks} for tasks in (small, full)]
+    assert kinds[0] <= kinds[1]
+    assert {(f, d) for f, _, d in kinds[0]} == {(f, d) for f, _, d in kinds[1]}
+    assert {task.key for task in small} <= {task.key for task in full}
+    polygons = {name for name, family in FAMILIES.items() if family.kind == "polygon"}
+    assert {(name, d) for name in polygons for d in ("kernel", "interior")} <= {
+        (f, d) for f, _, d in kinds[1]
+    }
 
 
 @pytest.mark.parametrize(
@@ -160,7 +193,7 @@ def test_a_map_that_fails_its_check_is_no_ok_row(monkeypatch: pytest.MonkeyPatch
     """Not even if the check complains in the way in which bad input is complained of."""
 
     class Wrong:
-        counts = None
+        counts = fakes.quick(study().tasks[0]).counts
 
         def sanity_check(self) -> None:
             raise UserError("edge 3 has no twin")

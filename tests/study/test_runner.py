@@ -12,7 +12,7 @@ import pytest
 from harness.errors import UserError
 from harness.study import load
 from harness.study.lock import locked
-from harness.study.outcome import Outcome, row_of
+from harness.study.outcome import VARYING_COLUMNS, Outcome, row_of
 from harness.study.runner import Engine, Mode, Summary, run_study
 from harness.study.store import ROWS, read_rows, replace_rows
 from harness.study.study_file import Study
@@ -63,8 +63,20 @@ def test_an_unfinished_study_is_refused_with_the_command_that_continues(tmp_path
     assert (tmp_path / ROWS).read_bytes() == before
     summary = _run(made, tmp_path, "resume")
     assert summary.added == 7
-    assert (tmp_path / ROWS).read_bytes().startswith(before)  # only ever appended
-    assert {row["task"] for row in rows} == {row["task"] for row in read_rows(tmp_path / ROWS)}
+    after = read_rows(tmp_path / ROWS)
+    assert [row for row in after if row in rows[:5]] == rows[:5]  # nothing was counted again
+    assert [row["task"] for row in after] == [task.key for task in made.tasks]
+
+
+def test_a_complete_study_is_the_same_file_whoever_ran_it(tmp_path: Path) -> None:
+    """But for the two columns that vary, which come last."""
+    made, files = study(sweep([3, 4, 5, 6], 3)), []
+    for jobs in (1, 5):
+        _run(made, tmp_path / str(jobs), jobs=jobs, work=fakes.delayed_by_seed)
+        lines = (tmp_path / str(jobs) / ROWS).read_text().splitlines()
+        assert lines[0].endswith(",".join(("", *VARYING_COLUMNS)))
+        files.append([line.rsplit(",", len(VARYING_COLUMNS))[0] for line in lines])
+    assert files[0] == files[1]
 
 
 def test_fresh_repeats_all_and_deletes_nothing(tmp_path: Path) -> None:

@@ -64,15 +64,17 @@ def build_fast(
     objective: Objective,
     corners: Sequence[RationalPoint],
     workers: int | None = None,
+    subdivision: int = 0,
 ) -> PlanarMap:
     """The exact diagram of ``instance`` inside the polygon ``corners`` (none: the plane).
 
     ``corners``: those of :func:`harness.diagram.domain_corners`.  ``workers``: threads, by default
-    one per processor; the map does not depend on their number.
+    one per processor; the map does not depend on their number.  ``subdivision``: which free points
+    the root triangles are made with; the diagram does not depend on it, only the way there.
 
     Raises Contradiction if every choice of free points failed.
     """
-    diagram = fast_diagram(instance, domain, objective, workers)
+    diagram = fast_diagram(instance, domain, objective, workers, subdivision)
     tally = diagram.counts()
     parts = _Parts(diagram)
     return PlanarMap(

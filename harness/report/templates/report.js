@@ -24,7 +24,8 @@ for (const table of document.querySelectorAll("table.sortable")) {
     head.addEventListener("keydown", (event) => { if (event.key === "Enter") sort(head, column); });
   });
 }
-// On paper nothing is folded away.
+// On paper nothing is folded away but long tables of numbers, which would be a hundred pages; a
+// reader who wants them there opens them first.
 addEventListener("beforeprint", () => {
-  for (const details of document.querySelectorAll("details")) details.open = true;
+  for (const details of document.querySelectorAll("details:not(.numbers)")) details.open = true;
 });
