@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from typing import Generic, TypeVar, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
-from harness.diagram.fast.lines import Lines, Points
+from harness.diagram.fast.line_points import Points
+from harness.diagram.fast.lines import Lines
 from harness.diagram.fast.prepare import Prepared
 from harness.diagram.fast.roots import Floats, Ints, double_double
 from harness.diagram.planar_map import RationalPoint
@@ -20,11 +21,8 @@ T = TypeVar("T")
 class _Computed(Sequence[T], Generic[T]):
     """A sequence whose members are computed when asked for."""
 
-    def __init__(self, length: int) -> None:
-        self._length = length
-
-    def _at(self, index: int) -> T:
-        raise NotImplementedError
+    def __init__(self, length: int, member: Callable[[int], T]) -> None:
+        self._length, self._member = length, member
 
     def __len__(self) -> int:
         return self._length
@@ -35,36 +33,13 @@ class _Computed(Sequence[T], Generic[T]):
     def __getitem__(self, index: slice) -> list[T]: ...
     def __getitem__(self, index: int | slice) -> T | list[T]:
         if isinstance(index, slice):
-            return [self._at(k) for k in range(*index.indices(self._length))]
+            return [self._member(k) for k in range(*index.indices(self._length))]
         if not -self._length <= index < self._length:
             raise IndexError(index)
-        return self._at(index % self._length)
+        return self._member(index % self._length)
 
     def __iter__(self) -> Iterator[T]:
-        return (self._at(k) for k in range(self._length))
-
-
-class _Rows(_Computed[list[int]]):
-    """The rows of a CSR matrix of numbers."""
-
-    def __init__(self, first: Ints, flat: Ints) -> None:
-        super().__init__(len(first) - 1)
-        self.first, self.flat = first, flat
-
-    def _at(self, index: int) -> list[int]:
-        row: list[int] = self.flat[self.first[index] : self.first[index + 1]].tolist()
-        return row
-
-
-class _Exact(_Computed[RationalPoint]):
-    """Points of lines first, then points that were added."""
-
-    def __init__(self, corners: ArrangedCorners) -> None:
-        super().__init__(len(corners.weights))
-        self.corners = corners
-
-    def _at(self, index: int) -> RationalPoint:
-        return self.corners.exact_corner(index)
+        return (self._member(k) for k in range(self._length))
 
 
 class ArrangedCorners:
@@ -167,13 +142,17 @@ class ArrangedCorners:
     @property
     def exact(self) -> Sequence[RationalPoint]:
         """The exact coordinates of each corner."""
-        return _Exact(self)
+        return _Computed(self._count, self.exact_corner)
 
     @property
     def incident(self) -> Sequence[list[int]]:
         """The incident segments of each corner: 2·segment, + 1 if it is an endpoint."""
         self._settle()
-        return _Rows(self._first, self._flat)
+        return _Computed(self._count, self._row)
+
+    def _row(self, index: int) -> list[int]:
+        row: list[int] = self._flat[self._first[index] : self._first[index + 1]].tolist()
+        return row
 
     def exact_corner(self, index: int) -> RationalPoint:
         """The exact coordinates of a corner."""

@@ -16,7 +16,8 @@ from itertools import pairwise
 import numpy as np
 
 from harness.diagram.fast.jit import compiled
-from harness.diagram.fast.lines import Lines, Points
+from harness.diagram.fast.line_points import Points
+from harness.diagram.fast.lines import Lines
 from harness.diagram.fast.roots import Ints
 
 

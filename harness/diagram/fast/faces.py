@@ -19,7 +19,8 @@ from harness.diagram.fast.arranged import ArrangedCorners
 from harness.diagram.fast.arrangement import Arrangement, arrange
 from harness.diagram.fast.far import Far, far_corners, free_middles
 from harness.diagram.fast.insertion import inserted
-from harness.diagram.fast.lines import Lines, Points, lines_of, points_on, within_hull
+from harness.diagram.fast.line_points import Points, points_on, within_hull
+from harness.diagram.fast.lines import Lines, lines_of
 from harness.diagram.fast.prepare import Prepared
 from harness.diagram.fast.roots import Floats, Ints, Roots, between, free_number
 from harness.diagram.planar_map import RationalPoint

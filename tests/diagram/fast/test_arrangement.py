@@ -12,7 +12,8 @@ from harness.diagram.fast.arranged import ArrangedCorners
 from harness.diagram.fast.arrangement import arrange
 from harness.diagram.fast.boxes import sift_triangles
 from harness.diagram.fast.faces import arranged_interior, arranged_roots
-from harness.diagram.fast.lines import lines_of, points_on, within_hull
+from harness.diagram.fast.line_points import points_on, within_hull
+from harness.diagram.fast.lines import lines_of
 from harness.diagram.fast.prepare import prepare
 from harness.diagram.fast.ties import tie_arrays
 from harness.geometry.instance import Instance
