@@ -86,13 +86,15 @@ def points_on(
         with np.errstate(all="ignore"):
             t = above / below
             error = 1.01 * (above_error + np.abs(t) * below_error) / (np.abs(below) - below_error)
-            error = np.where(np.abs(below) > 2 * below_error, error + 4 * U * np.abs(t), np.inf)
+            known = np.abs(below) > 2 * below_error
+            error = np.where(known, error + 4 * U * np.abs(t), np.inf)
+            t = np.where(known, t, 0.0)
         if within is not None:
             wanted = ~((t + error < within[i, 0]) | (t - error > within[i, 1]))
             j, t, error = j[wanted], t[wanted], error[wanted]
         exact = [lines.parameter_of_point(i, others[k]) for k in on_line[i]]
         near = np.array([float(x) for x in exact])
-        t = np.concatenate([np.where(np.isfinite(t), t, 0.0), near])
+        t = np.concatenate([t, near])
         error = np.concatenate([error, 4 * U * np.abs(near)])
         ids = np.concatenate(
             [
@@ -201,11 +203,14 @@ def within_hull(lines: Lines) -> Floats:
 
     A little is added, far more than roundings.
     """
-    from scipy.spatial import ConvexHull
+    from scipy.spatial import ConvexHull, QhullError
 
     ends = np.array([[float(x) for x in point] for segment in lines.ends for point in segment])
     middle, size = ends.mean(axis=0), np.ptp(ends, axis=0).max()
-    normals = ConvexHull((ends - middle) / size).equations
+    try:
+        normals = ConvexHull((ends - middle) / size).equations
+    except QhullError:  # too flat for doubles: nothing is left out
+        normals = np.zeros((0, 3))
     d = np.array([[float(x) for x in v] for v in lines.d]) / size
     p = (np.array([[float(x) for x in v] for v in lines.p]) - middle) / size
     within = np.tile([-np.inf, np.inf], (len(d), 1))
