@@ -17,8 +17,9 @@ from typing import Any
 import numpy as np
 
 from harness.diagram.fast.jit import compiled
+from harness.diagram.fast.memory import borrowed, release
 from harness.diagram.fast.roots import Floats, Ints
-from harness.diagram.fast.sifting import new_work, sift_box
+from harness.diagram.fast.sifting import borrowed_work, borrowed_world, new_work, sift_box
 from harness.diagram.fast.subdivide import grown
 
 #: So many triangles share their candidates, and all do if there are so few candidates.
@@ -45,11 +46,13 @@ def sift_boxes(points, index, axis, sign, n, segments, size, sense, definite, wo
     for a in range(n):
         flat[a] = a
     used = n
-    ids = np.empty(n, np.int64)
-    w = new_work(n)
-    box, three = np.zeros((4, 4)), np.empty((3, 4))
-    weights, ones = np.ones(4), np.ones(3)
-    keys = np.empty(count)
+    kept_work = new_work(n)
+    w, world, segments = borrowed_work(kept_work), borrowed_world(world), borrowed(segments)
+    kept_small = (np.ones(3), np.ones(4), np.zeros((4, 4)), np.empty((3, 4)), np.empty(n, np.int64))
+    ones, weights, box = borrowed(kept_small[0]), borrowed(kept_small[1]), borrowed(kept_small[2])
+    three, ids = borrowed(kept_small[3]), borrowed(kept_small[4])
+    kept_keys = np.empty(count)
+    points, index, keys = borrowed(points), borrowed(index), borrowed(kept_keys)
     # Where the stretch begins and ends, first and count of the candidates of the one around it.
     stack = np.empty((128, 4), np.int64)
     stack[0, 0], stack[0, 1], stack[0, 2], stack[0, 3] = 0, count, 0, n
@@ -76,6 +79,7 @@ def sift_boxes(points, index, axis, sign, n, segments, size, sense, definite, wo
         stack[top + 1, 0], stack[top + 1, 1] = middle, stop
         stack[top + 1, 2], stack[top + 1, 3] = source, m
         top += 2
+    release(kept_work, kept_small, kept_keys)
     return first, number, flat[:used].copy()
 
 

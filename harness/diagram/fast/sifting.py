@@ -6,6 +6,7 @@ import numpy as np
 
 from harness.diagram.fast.forms import error_factor
 from harness.diagram.fast.jit import compiled
+from harness.diagram.fast.memory import borrowed, release
 from harness.diagram.fast.prune import prune
 from harness.diagram.fast.subdivide import grown
 from harness.diagram.fast.tables import root_table
@@ -30,6 +31,33 @@ def new_work(n):
 
 
 @compiled
+def borrowed_work(w):
+    """What ``new_work`` made, borrowed."""
+    tables, norms, work, spots, one, two = w
+    return (
+        borrowed(tables),
+        borrowed(norms),
+        (borrowed(work[0]), borrowed(work[1]), borrowed(work[2]), borrowed(work[3])),
+        borrowed(spots),
+        borrowed(one),
+        borrowed(two),
+    )
+
+
+@compiled
+def borrowed_world(world):
+    """See :data:`harness.diagram.fast.build.World`; borrowed."""
+    lines, lengths, classes, tie_first, ties = world
+    return (
+        borrowed(lines),
+        borrowed(lengths),
+        borrowed(classes),
+        borrowed(tie_first),
+        borrowed(ties),
+    )
+
+
+@compiled
 def sift(ids, m, corners, weights, far, segments, size, sense, definite, world, w):
     """Keep in ``ids`` (m,) the candidates that no pivot beats all over a triangle; their number."""
     tables, norms, work, spots, _, _ = w
@@ -44,13 +72,14 @@ def sift_regions(regions, corners, weights, n, segments, size, sense, definite, 
     """Candidates of each region (triangles of corners), in CSR form; the last is the whole."""
     first = np.zeros(len(regions) + 2, np.int64)
     flat = np.empty(1024, np.int64)
-    ids = np.empty(n, np.int64)
-    w = new_work(n)
-    three, ones = np.empty((3, 4)), np.empty(3)
+    kept = (np.empty(n, np.int64), np.empty((3, 4)), np.empty(3))
+    ids, three, ones = borrowed(kept[0]), borrowed(kept[1]), borrowed(kept[2])
+    kept_work = new_work(n)
+    w, world, segments = borrowed_work(kept_work), borrowed_world(world), borrowed(segments)
     for r in range(len(regions) + 1):
         for a in range(n):
             ids[a] = a
-        kept = n
+        left = n
         if r < len(regions):
             far = 0
             for k in range(3):
@@ -58,10 +87,11 @@ def sift_regions(regions, corners, weights, n, segments, size, sense, definite, 
                 ones[k] = weights[regions[r, k]]
                 if ones[k] == 0.0:
                     far |= 1 << k
-            kept = sift(ids, n, three, ones, far, segments, size, sense, definite, world, w)
-        flat = grown(flat, first[r] + kept)
-        flat[first[r] : first[r] + kept] = ids[:kept]
-        first[r + 1] = first[r] + kept
+            left = sift(ids, n, three, ones, far, segments, size, sense, definite, world, w)
+        flat = grown(flat, first[r] + left)
+        flat[first[r] : first[r] + left] = ids[:left]
+        first[r + 1] = first[r] + left
+    release(kept, kept_work)
     return first, flat[: first[-1]].copy()
 
 
@@ -108,10 +138,11 @@ def sift_kernel(chain, m, n, segments, size, sense, world):
     owner_count = np.zeros(triangles, np.int64)
     flat = np.empty(4 * n + 1024, np.int64)
     used = 0
-    w = new_work(n)
-    ids = np.empty(n, np.int64)
-    ones, weights = np.ones(3), np.ones(4)
-    box, three = np.empty((4, 4)), np.empty((3, 4))
+    kept_work = new_work(n)
+    w, world, segments = borrowed_work(kept_work), borrowed_world(world), borrowed(segments)
+    kept_small = (np.ones(3), np.ones(4), np.empty((4, 4)), np.empty((3, 4)), np.empty(n, np.int64))
+    ones, weights, box = borrowed(kept_small[0]), borrowed(kept_small[1]), borrowed(kept_small[2])
+    three, ids = borrowed(kept_small[3]), borrowed(kept_small[4])
     # low, high, first and count of the candidates of the piece around it.
     stack = np.empty((4 * m + 16, 4), np.int64)
     for a in range(n):
@@ -156,6 +187,7 @@ def sift_kernel(chain, m, n, segments, size, sense, world):
         stack[top + 1, 0], stack[top + 1, 1] = middle, high
         stack[top + 1, 2], stack[top + 1, 3] = first, count
         top += 2
+    release(kept_work, kept_small)
     return owner_first, owner_count, flat[:used].copy()
 
 
