@@ -10,7 +10,8 @@ about (n/2)(1 − 2τ/π) others, and every passing makes two triple points:
     vertices ≈ (n²/2)(1 − 2τ/π).
 
 Noise of relative size ``noise``·n^(−``noise_power``) makes the polygon generic; the default is
-far below the n⁻² at which the weave begins to come apart.
+below the n⁻³ (convex: n⁻⁴) at which the weave comes apart.  The exact numbers of vertices and
+cells, and the noise they bear, are derived in ``harness.analysis.weave`` and ``weave_noise``.
 """
 
 from __future__ import annotations
@@ -48,10 +49,15 @@ def zigzag(
     of tips described in this module.  O(n).
     """
     ZIGZAG.check(n, {"tilt": tilt, "noise": noise, "noise_power": noise_power})
+    inner = zigzag_inner_radius(n, tilt)
+    return _alternating("zigzag", n, seed, inner, noise * inverse_power(n, noise_power))
+
+
+def zigzag_inner_radius(n: int, tilt: float) -> float:
+    """ρ = √(1 + κ²) − κ with κ = tan(tilt) sin(2π/n), the inner radius of ``zigzag``."""
     turns = tilt / (2.0 * math.pi)
     kappa = sine(turns) / cosine(turns) * sine(1.0 / n)
-    inner = 1.0 / (kappa + float(np.sqrt(1.0 + kappa * kappa)))  # √(1 + κ²) − κ, stably
-    return _alternating("zigzag", n, seed, inner, noise * inverse_power(n, noise_power))
+    return 1.0 / (kappa + float(np.sqrt(1.0 + kappa * kappa)))  # stably
 
 
 def convex_weave(
@@ -69,8 +75,13 @@ def convex_weave(
     Source: the convex counterexample to linear complexity in the kernel; see this module.  O(n).
     """
     CONVEX_WEAVE.check(n, {"delta": delta, "noise": noise, "noise_power": noise_power})
-    inner = 1.0 - delta * _sagitta(n)
+    inner = convex_inner_radius(n, delta)
     return _alternating("convex-weave", n, seed, inner, noise * inverse_power(n, noise_power))
+
+
+def convex_inner_radius(n: int, delta: float) -> float:
+    """ρ = 1 − δ(1 − cos 2π/n), the inner radius of ``convex_weave``."""
+    return 1.0 - delta * _sagitta(n)
 
 
 def _alternating(family: str, n: int, seed: int, inner: float, size: float) -> Array:

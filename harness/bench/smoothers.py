@@ -161,6 +161,15 @@ def _pyvista(points: Floats, triangles: Ints) -> Floats:
     return np.array(done.points[:, :2], dtype=np.float64)
 
 
+def _mmg(points: Floats, triangles: Ints) -> Floats:
+    """mmg2d without insertion and swaps, and with the boundary as it is."""
+    import mmgpy
+
+    mesh = mmgpy.MmgMesh2D(points.copy(), triangles.astype(np.int32))
+    mesh.remesh(noinsert=True, noswap=True, nosurf=True, nofem=True, verbose=-1)
+    return np.array(mesh.get_vertices())  # in their order, as nothing else changes
+
+
 _KNOWN: dict[str, tuple[str, Smoother]] = {
     "netgen-10": ("netgen", _netgen(10)),
     "netgen-30": ("netgen", _netgen(30)),
@@ -171,6 +180,7 @@ _KNOWN: dict[str, tuple[str, Smoother]] = {
     "pymeshlab": ("pymeshlab", _pymeshlab),
     "scikit-fem": ("skfem", _skfem),
     "libigl": ("igl", _igl),
+    "mmg2d": ("mmgpy", _mmg),
 }
 
 SMOOTHERS: dict[str, Smoother] = {

@@ -26,6 +26,8 @@ VERBS = (
     "study",
     "verify",
     "report",
+    "audit",
+    "figures",
     "bench",
 )
 

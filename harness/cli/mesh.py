@@ -13,6 +13,7 @@ from harness.mesh.options import OBJECTIVES, REMEDIES, SWEEPS, TOPOLOGIES
 
 if TYPE_CHECKING:
     from harness.mesh import Improved
+    from harness.mesh.files import Stored
     from harness.mesh.state import Sweep
 
 PICTURES = (".svg", ".png", ".pdf")
@@ -21,9 +22,10 @@ FORMATS = "a mesh file of any format that meshio knows: VTK, VTU, Gmsh, OBJ, OFF
 DESCRIPTION = "Triangulations of the plane: make their smallest angles larger, and draw them."
 IMPROVE = """\
 Move the interior vertices of a triangulation (and with --topology change its edges) so that its
-smallest angles grow; boundary vertices stay.  Point and cell data are kept.  No triangle is ever
+smallest angles grow; boundary vertices stay, and so do interfaces: edges between triangles of
+different regions, and lines in the file.  Point and cell data are kept.  No triangle is ever
 inverted, and with the objective 'all' the smallest angle never gets worse.  OUT is either the old
-file or the complete new one; interrupted or late, the best mesh so far is written."""
+file, as when interrupted, or the complete new one."""
 DRAW = "Draw a triangulation, every triangle coloured by its smallest angle."
 
 ROWS = (
@@ -86,6 +88,18 @@ def _register_improve(verbs: argparse._SubParsersAction[argparse.ArgumentParser]
     parser.add_argument(
         "--fixed", metavar="NAME", help="point data; vertices where it is not zero stay"
     )
+    interfaces = parser.add_mutually_exclusive_group()
+    interfaces.add_argument(
+        "--regions",
+        metavar="NAMES",
+        help="cell data that tell regions apart, separated by commas; edges between regions stay "
+        "(default: all of one whole number a cell, and sets of cells)",
+    )
+    interfaces.add_argument(
+        "--ignore-interfaces",
+        action="store_true",
+        help="treat edges between regions, and lines in the file, as any others",
+    )
     parser.add_argument(
         "--time-limit",
         type=_seconds,
@@ -124,12 +138,19 @@ def _register_draw(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -
 
 def improve(args: argparse.Namespace) -> int:
     """Improve a mesh; exit status 0."""
-    from harness.mesh import read_mesh, write_mesh
+    from harness.mesh import read_mesh
     from harness.mesh.door import improve_mesh
+    from harness.mesh.formats import check_target
     from harness.mesh.options import Options
 
     options = Options(args.objective, args.topology, args.remedy, args.sweeps)
-    stored = read_mesh(args.source, args.fixed)
+    check_target(args.target)
+    stored = read_mesh(
+        args.source,
+        args.fixed,
+        regions=None if args.regions is None else args.regions.split(","),
+        interfaces=not args.ignore_interfaces,
+    )
     better = improve_mesh(
         stored.mesh,
         options,
@@ -137,17 +158,7 @@ def improve(args: argparse.Namespace) -> int:
         time_limit=args.time_limit,
         tell=None if args.quiet else _tell,
     )
-    if better.is_reconnected:
-        write_mesh(
-            args.target,
-            stored,
-            better.points,
-            better.triangles,
-            vertices=better.vertices,
-            cells=better.cells,
-        )
-    else:
-        write_mesh(args.target, stored, better.points)
+    lost = _write(args.target, stored, better)
     record = {
         "file": str(args.source),
         "out": str(args.target),
@@ -155,12 +166,15 @@ def improve(args: argparse.Namespace) -> int:
         "topology": options.topology,
         "vertices": len(better.points),
         "triangles": len(better.triangles),
+        "interface_edges": len(stored.mesh.kept),
         **better.as_dict(),
     }
     if args.json:
         print(json.dumps(record, ensure_ascii=False))
     else:
-        print(*_table(better), sep="\n")
+        print(*_table(better, len(stored.mesh.kept)), sep="\n")
+    if lost:
+        print(f"avd: {args.target}: not in the file: {', '.join(lost)}", file=sys.stderr)
     if not better.complete:
         print("avd: the time was over: this is the best mesh so far", file=sys.stderr)
     return 0
@@ -174,7 +188,24 @@ def _tell(sweep: Sweep) -> None:
     )
 
 
-def _table(better: Improved) -> list[str]:
+def _write(target: Path, stored: Stored, better: Improved) -> list[str]:
+    """Write the better mesh; what the format does not hold."""
+    from harness.mesh import write_mesh
+
+    if not better.is_reconnected:
+        return write_mesh(target, stored, better.points)
+    return write_mesh(
+        target,
+        stored,
+        better.points,
+        better.triangles,
+        vertices=better.vertices,
+        cells=better.cells,
+        made=better.made,
+    )
+
+
+def _table(better: Improved, interface_edges: int) -> list[str]:
     """What has become of the mesh, for people."""
     lines = [f"{'degrees':16}{'before':>12}{'after':>12}"]
     before, after = better.before.as_dict(), better.after.as_dict()
@@ -182,6 +213,7 @@ def _table(better: Improved) -> list[str]:
     counts: list[tuple[str, Any]] = [
         ("vertices", len(better.points)),
         ("triangles", len(better.triangles)),
+        ("interface edges", interface_edges),
         ("moves", better.moves),
         ("flips", better.flips),
         ("inverted", better.inverted),

@@ -5,14 +5,16 @@ from __future__ import annotations
 import argparse
 import shlex
 import sys
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from harness.errors import UserError
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from harness.study.runner import Summary
-    from harness.study.study_file import Study
 
 MESHES = "mesh"
 """The built-in study of mesh improvement: its rows are meshes, not diagrams."""
@@ -100,18 +102,10 @@ def run(args: argparse.Namespace) -> int:
     if sys.platform == "win32":
         raise UserError("avd study needs a POSIX system (Linux, macOS): it limits memory")
 
-    if args.study == MESHES:
-        return _run_meshes(args)
-
-    from harness.study.builtin import NoScales, find_study
-
+    run_it, name = _chosen(args)
+    directory = args.out or Path("results") / name
     try:
-        study = find_study(args.study, args.scale)
-    except NoScales as problem:
-        args.usage_error(str(problem))
-    directory = args.out or Path("results") / study.name
-    try:
-        summary = _run(args, study, directory)
+        summary = run_it(directory)
     except KeyboardInterrupt:  # at the very start, or for the second time
         print(f"avd: interrupted; continue with: {_command(args, '--resume')}", file=sys.stderr)
         return INTERRUPTED
@@ -127,6 +121,33 @@ def run(args: argparse.Namespace) -> int:
     return FAILED if summary.failed else 0
 
 
+def _chosen(args: argparse.Namespace) -> tuple[Callable[[Path], Summary], str]:
+    """What runs the study that is asked for in a directory, and the study's name."""
+    settings = {
+        "mode": args.mode,
+        "jobs": args.jobs,
+        "engine": args.engine,
+        "scheduler": args.scheduler,
+        "command": _command(args, f"--{args.mode}" if args.mode != "new" else None),
+        "resume_command": _command(args, "--resume"),
+    }
+    if args.study == MESHES:
+        if args.scale is not None:
+            args.usage_error("the study mesh has no scales")
+        from harness.study.mesh_runner import run_meshes
+
+        return partial(run_meshes, **settings), MESHES
+
+    from harness.study.builtin import NoScales, find_study
+    from harness.study.runner import run_study
+
+    try:
+        study = find_study(args.study, args.scale)
+    except NoScales as problem:
+        args.usage_error(str(problem))
+    return partial(run_study, study, **settings), study.name
+
+
 def _list() -> int:
     from harness.study.builtin import builtin_studies
 
@@ -137,54 +158,6 @@ def _list() -> int:
 
     print(f"{MESHES}\t{len(tasks())} tasks\t{MESHES_DESCRIPTION}")
     return 0
-
-
-def _run_meshes(args: argparse.Namespace) -> int:
-    """Run the study of meshes, one after the other; exit status 0 or 130."""
-    from harness.report.mesh_report import write_mesh_report
-    from harness.study.meshes import run_meshes, tasks
-    from harness.study.progress import Progress
-
-    if args.engine != "local" or args.jobs is not None:
-        args.usage_error("the study mesh runs one task after the other, on this machine")
-    if args.scale is not None:
-        args.usage_error("the study mesh has no scales")
-    directory = args.out or Path("results") / MESHES
-    try:
-        with Progress("study mesh", len(tasks()), {}) as progress:
-            added = run_meshes(
-                directory,
-                mode=args.mode,
-                command=_command(args, f"--{args.mode}" if args.mode != "new" else None),
-                tell=lambda done: progress.update({"ok": done}),
-            )
-    except KeyboardInterrupt:
-        print(
-            f"avd: interrupted; rows are kept in {directory}; "
-            f"continue with: {_command(args, '--resume')}",
-            file=sys.stderr,
-        )
-        return INTERRUPTED
-    print(f"avd: {added} rows added in {directory}", file=sys.stderr)
-    if not args.no_report:
-        page, lines = write_mesh_report(directory)
-        print(f"report: {page}", *lines, sep="\n")
-    return 0
-
-
-def _run(args: argparse.Namespace, study: Study, directory: Path) -> Summary:
-    from harness.study.runner import run_study
-
-    return run_study(
-        study,
-        directory,
-        mode=args.mode,
-        jobs=args.jobs,
-        engine=args.engine,
-        scheduler=args.scheduler,
-        command=_command(args, f"--{args.mode}" if args.mode != "new" else None),
-        resume_command=_command(args, "--resume"),
-    )
 
 
 def _report(directory: Path) -> None:

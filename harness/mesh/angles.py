@@ -46,7 +46,7 @@ def star_angles(px, py, k, rx, ry, strict, angles):
         ex, ey = rx[j] - rx[i], ry[j] - ry[i]
         apex = np.arctan2(cross, wx * ux + wy * uy)
         base = np.arctan2(cross, -(wx * ex + wy * ey))
-        rest = np.pi - apex - base
+        rest = max(np.pi - apex - base, 0.0)
         angles[3 * i], angles[3 * i + 1], angles[3 * i + 2] = apex, base, rest
         least = min(least, apex, base, rest)
         wx, wy = ux, uy
@@ -57,10 +57,12 @@ def star_angles(px, py, k, rx, ry, strict, angles):
 def triangle_least(ax, ay, bx, by, cx, cy):
     """The least angle of one triangle in radians; 0 if it is not positive in doubles."""
     ux, uy, wx, wy = bx - ax, by - ay, cx - ax, cy - ay
-    cross = max(ux * wy - uy * wx, 0.0)
+    cross = ux * wy - uy * wx
+    if not cross > 0.0:
+        return 0.0
     first = np.arctan2(cross, ux * wx + uy * wy)
     second = np.arctan2(cross, -(ux * (wx - ux) + uy * (wy - uy)))
-    return min(first, second, np.pi - first - second)
+    return max(min(first, second, np.pi - first - second), 0.0)
 
 
 @compiled

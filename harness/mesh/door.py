@@ -5,12 +5,15 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 import numpy.typing as npt
 
+from harness.errors import UserError
 from harness.geometry.predicates import orientations
+from harness.mesh.cuts import cut, uncut
+from harness.mesh.glue import glued
 from harness.mesh.mesh import Mesh
 from harness.mesh.methods import GUARDED, run
 from harness.mesh.options import Options
@@ -21,6 +24,8 @@ from harness.mesh.validation import Floats
 
 PLACES, LEAST_PLACES = 4, 16
 """One new vertex for so many free ones is possible, and at least so many."""
+SMALLEST = -960
+"""Coordinates below 2 to this power are near the least doubles, where these have few digits."""
 
 
 class InvertedTriangle(ArithmeticError):
@@ -37,7 +42,8 @@ class Improved:
     connectivity.  ``inverted``: triangles that are not positive, 0 but for ``laplacian``.
     ``seconds``: of the improvement alone.  ``history``: a record of every sweep.  ``complete``:
     False if the time limit came first.  ``vertices`` (n,) and ``cells`` (m,): the old vertex and
-    the old triangle whose data a new one takes.
+    the old triangle whose data a new one takes, one of the same region.  ``made``: so many of the
+    points, the last ones, are new.
     """
 
     points: Floats
@@ -52,6 +58,7 @@ class Improved:
     complete: bool
     vertices: Ints
     cells: Ints
+    made: int = 0
     history: list[Sweep] = field(default_factory=list)
 
     @property
@@ -78,6 +85,8 @@ def improve(
     triangles: npt.ArrayLike,
     *,
     fixed: npt.ArrayLike | None = None,
+    regions: npt.ArrayLike | None = None,
+    edges: npt.ArrayLike | None = None,
     objective: str = Options.objective,
     topology: str = Options.topology,
     remedy: str = Options.remedy,
@@ -90,6 +99,8 @@ def improve(
 
     ``points``: (n, 2), or (n, 3) in one plane z = const.  ``triangles``: (m, 3), all in one
     orientation.  ``fixed``: further vertices that stay, as indices or n truth values.
+    ``regions``: (m,) or (m, j), what tells regions of the mesh apart: edges between two regions
+    stay, with their vertices, and so do ``edges`` (e, 2).
     ``objective``, ``topology``, ``remedy``: see :mod:`harness.mesh.options`; with the objective
     ``all`` the smallest angle never gets worse.  ``sweeps``: at most that many times n visits of
     vertices.  ``workers``: threads, one per processor by default; the result does not depend on
@@ -101,7 +112,7 @@ def improve(
         UserError: names the first triangle that is wrong, or the option.
     """
     return improve_mesh(
-        Mesh.of(points, triangles, fixed),
+        Mesh.of(points, triangles, fixed, regions=regions, edges=edges),
         Options(objective, topology, remedy, sweeps),
         workers=workers,
         time_limit=time_limit,
@@ -120,54 +131,63 @@ def improve_mesh(
     """The same for a mesh that is checked."""
     start = time.perf_counter()
     deadline = np.inf if time_limit is None else time.monotonic() + time_limit
-    exponent = int(np.frexp(np.abs(mesh.points).max(initial=0.0))[1])  # then all are in [−1, 1]
-    small = Mesh(np.ldexp(mesh.points, -exponent), mesh.triangles, mesh.fixed, mesh.stars)
+    whole = cut(mesh) if options.reconnects and len(mesh.kept) else uncut(mesh)
+    small, exponent = _scaled(whole.mesh)
     if options.topology == "full":
         small = with_places(small, max(LEAST_PLACES, len(mesh.free) // PLACES))
-    n = len(mesh.points)
     with state_of(small, workers, deadline, tell) as state:
-        state.origins, state.born[0] = np.arange(len(small.points)), n
+        state.origins, state.born[0] = np.arange(len(small.points)), len(whole.owners)
         complete = run(state, options) if options.sweeps and len(mesh.free) else True
-    places = np.ldexp(state.points, exponent)
-    stayed = (state.points[:n] == small.points[:n]).all(axis=1)
-    places[:n][stayed] = mesh.points[stayed]
-    used = state.stars.degrees > 0
-    used[:n] |= mesh.stars.degrees == 0
-    number = np.cumsum(used) - 1
-    better, triangles = places[used], state.triangles
-    if not used[:n].all() or len(better) != n:
-        triangles = number[triangles]
-    inverted = _inverted(better, triangles)
+    done = glued(mesh, whole, small, state, exponent)
+    inverted = _inverted(done.points, done.triangles)
     if len(inverted) and options.objective in GUARDED:
-        raise InvertedTriangle(f"triangle {inverted[0]} is not positive")
+        _refuse_inverted(int(inverted[0]), exponent)
     return Improved(
-        points=better,
-        triangles=triangles,
+        points=done.points,
+        triangles=done.triangles,
         before=quality_of(mesh.points, mesh.triangles),
-        after=quality_of(better, triangles),
+        after=quality_of(done.points, done.triangles),
         visits=state.visits,
         moves=state.moves,
         flips=state.flips,
         inverted=len(inverted),
         seconds=time.perf_counter() - start,
         complete=complete,
-        vertices=state.origins[used],
-        cells=_origins(mesh, better, triangles),
+        vertices=done.vertices,
+        cells=done.cells,
+        made=done.made,
         history=state.history,
     )
+
+
+def _scaled(mesh: Mesh) -> tuple[Mesh, int]:
+    """The same mesh with coordinates of at most 1, and the power of two by which they are less.
+
+    Raises:
+        UserError: that is not exact, so what is proven of one mesh is not of the other.
+    """
+    used = np.where((mesh.stars.degrees > 0)[:, np.newaxis], mesh.points, 0.0)
+    exponent = int(np.frexp(np.abs(used).max(initial=0.0))[1])
+    small = np.ldexp(used, -exponent)
+    lost = np.flatnonzero((np.ldexp(small, exponent) != used).any(axis=1))
+    if len(lost):
+        raise UserError(
+            f"point {lost[0]} (counting from 0) has a coordinate that is more than 2^1000 times "
+            "smaller than others: that is beyond the range of doubles"
+        )
+    return Mesh(small, mesh.triangles, mesh.fixed, mesh.stars, mesh.kept), exponent
+
+
+def _refuse_inverted(triangle: int, exponent: int) -> NoReturn:
+    if exponent < SMALLEST:
+        raise UserError(
+            f"the mesh is too small for doubles: rounded to what they hold there, triangle "
+            f"{triangle} of the result would be inverted; scale the mesh up"
+        )
+    raise InvertedTriangle(f"triangle {triangle} is not positive")
 
 
 def _inverted(points: Floats, triangles: Ints) -> Ints:
     """The triangles that are not positive, exactly."""
     signs = orientations(*(points[triangles[:, k]] for k in range(3)))
     return np.flatnonzero(signs <= 0)
-
-
-def _origins(mesh: Mesh, points: Floats, triangles: Ints) -> Ints:
-    """For each triangle the old one with the nearest centroid; itself if none has changed."""
-    if triangles is mesh.triangles:
-        return np.arange(len(triangles))
-    from scipy.spatial import cKDTree
-
-    old = cKDTree(mesh.points[mesh.triangles].mean(axis=1))
-    return np.asarray(old.query(points[triangles].mean(axis=1))[1], dtype=np.int64)

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from harness.errors import UserError
+from harness.mesh.interfaces import interfaces
 from harness.mesh.stars import Flags, Ints, Stars
 from harness.mesh.validation import Floats, checked
 
@@ -18,27 +19,41 @@ class Mesh:
     """A triangulation; made by :meth:`of`, which checks it.
 
     ``points``: (n, 2).  ``triangles``: (m, 3), counter-clockwise.  ``fixed``: (n,), the vertices
-    that stay: those of the boundary, those that no triangle uses, and those that the user names.
+    that stay: those of the boundary and of interfaces, those that no triangle uses, and those that
+    the user names.  ``kept``: (k, 2), the interior edges that stay (see
+    :mod:`harness.mesh.interfaces`).
     """
 
     points: Floats
     triangles: Ints
     fixed: Flags
     stars: Stars
+    kept: Ints
 
     @classmethod
     def of(
-        cls, points: npt.ArrayLike, triangles: npt.ArrayLike, fixed: npt.ArrayLike | None = None
+        cls,
+        points: npt.ArrayLike,
+        triangles: npt.ArrayLike,
+        fixed: npt.ArrayLike | None = None,
+        *,
+        regions: npt.ArrayLike | None = None,
+        edges: npt.ArrayLike | None = None,
     ) -> Mesh:
         """Check a triangulation; see :func:`harness.mesh.validation.checked`.
 
-        ``fixed``: further vertices that stay, as indices or as n truth values.
+        ``fixed``: further vertices that stay, as indices or as n truth values.  ``regions``: (m,)
+        or (m, j), what tells regions apart; edges between two regions stay, and so do ``edges``
+        (e, 2).
 
         Raises:
             UserError: names the first triangle that is wrong.
         """
         xy, corners, stars = checked(points, triangles)
-        return cls(xy, corners, ~stars.closed | _marked(fixed, len(xy)), stars)
+        stay = ~stars.closed | _marked(fixed, len(xy))
+        kept = interfaces(corners, regions, edges)
+        stay[kept] = True
+        return cls(xy, corners, stay, stars, kept)
 
     @cached_property
     def free(self) -> Ints:

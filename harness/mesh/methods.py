@@ -11,8 +11,9 @@ from harness.mesh.options import Options
 from harness.mesh.reconnected import improve_flipping, improve_fully
 from harness.mesh.state import State
 
-PORTION = 4096
-"""Visits of the greedy between two looks at the clock."""
+PORTION, PORTIONS = 4096, 8
+"""Visits of the greedy between two looks at the clock: at least so many, or a sweep's in so many
+portions."""
 SMALL = np.pi / 6
 """Stars with a smaller angle (radians) are left to ascent by ``combined``: 30°, as in the paper
 of Freitag and Ollivier-Gooch."""
@@ -58,7 +59,7 @@ def _apex(state: State, options: Options) -> None:
     arrays = (*state.stars, state.free, state.x, state.y)
     left = options.sweeps * len(state.order)
     while left > 0 and not state.is_late:
-        portion = min(left, max(PORTION, len(state.order)))
+        portion = min(left, max(PORTION, len(state.order) // PORTIONS))
         visits, moves, flips, done = greedy(waiting, *arrays, *remedies, portion, portion)
         state.visits += visits
         state.moves += moves

@@ -43,3 +43,8 @@ class Options:
             raise UserError(f"topology {self.topology} needs the objective 'all'")
         if self.remedy != "none" and self.objective != "apex":
             raise UserError(f"remedy {self.remedy} needs the objective 'apex'")
+
+    @property
+    def reconnects(self) -> bool:
+        """Whether edges may change."""
+        return self.topology != "fixed" or self.remedy in ("chord", "both")

@@ -125,6 +125,82 @@ def operation(number, v, z, offsets, degrees, ring, closed, x, y):
 
 
 @compiled
+def put_last(i, many, patch, kept, old_x, old_y):
+    """Exchange place i of a patch and of what is kept with the last of its first ``many``."""
+    j = many - 1
+    patch[i], patch[j] = patch[j], patch[i]
+    old_x[i], old_x[j] = old_x[j], old_x[i]
+    old_y[i], old_y[j] = old_y[j], old_y[i]
+    for column in range(kept.shape[1]):
+        kept[i, column], kept[j, column] = kept[j, column], kept[i, column]
+
+
+@compiled
+def smooth_around(z, patch, alive, offsets, degrees, ring, x, y):
+    """Smooth a patch, with a new vertex z (or −1) in turn with the others; the moves."""
+    if z < 0:
+        return smooth_patch(patch, alive, ROUNDS, *SHARP, offsets, degrees, ring, x, y)
+    one, moved = np.full(1, z), 0
+    for _ in range(2):
+        moved += smooth_patch(one, 1, 2, *SHARP, offsets, degrees, ring, x, y)
+        moved += smooth_patch(patch, alive, ROUNDS // 2, *SHARP, offsets, degrees, ring, x, y)
+    return moved
+
+
+@compiled
+def attempt(number, v, z, tick, mesh, free, space):
+    """Try step ``number`` at v, which inserts z if that is not −1; undone if it is no better.
+
+    ``space``: room for the patch and what is kept of it.  Returns whether it is better, visits,
+    moves, how many vertices of the patch are to be looked at again, and the vertex that is gone
+    or −1.
+    """
+    offsets, degrees, ring, closed, x, y = mesh
+    mark, patch, kept, old_x, old_y, old, new = space
+    many, count = watch(v, offsets, degrees, ring, free, mark, tick, patch)
+    if count > len(kept):
+        return False, 0, 0, 0, -1
+    save(count, patch, offsets, degrees, ring, x, y, kept, old_x, old_y)
+    m = vector_of(patch, count, offsets, degrees, ring, closed, x, y, mark, tick, old)
+    visits = moved = 0
+    if operation(number, v, z, offsets, degrees, ring, closed, x, y):
+        alive, gone = many, -1
+        for i in range(many):
+            if degrees[patch[i]] == 0:
+                gone, alive = patch[i], many - 1
+                put_last(i, many, patch, kept, old_x, old_y)  # smoothed are the first ones
+                break
+        all_of_it = count
+        if z >= 0:
+            mark[z] = tick
+            patch[count] = z
+            all_of_it += 1
+        moved = smooth_around(z, patch, alive, offsets, degrees, ring, x, y)
+        visits = alive * ROUNDS
+        k = vector_of(patch, all_of_it, offsets, degrees, ring, closed, x, y, mark, tick, new)
+        if is_better(old, m, new, k):
+            return True, visits, moved, all_of_it, gone
+    restore(count, patch, offsets, degrees, ring, x, y, kept, old_x, old_y)
+    if z >= 0:
+        degrees[z], closed[z] = 0, False
+    return False, visits, 0, 0, -1
+
+
+@compiled
+def look_again(patch, count, mesh, free, keys, heap, place, size):
+    """New keys for the vertices of a patch that has changed; the new size of the queue."""
+    offsets, degrees, ring, closed, x, y = mesh
+    for i in range(count):
+        s = patch[i]
+        if free[s]:
+            key = star_least(s, offsets, degrees, ring, closed, x, y)
+            size = put(heap, place, keys, size, s, key)
+        elif place[s] >= 0:  # it is gone: it comes last
+            size = put(heap, place, keys, size, s, np.inf)
+    return size
+
+
+@compiled
 def try_points(waiting, offsets, degrees, ring, closed, free, x, y, origins, born, target, budget):
     """Worst vertex first, try insertions and deletions, until ``budget`` visits are used.
 
@@ -137,80 +213,37 @@ def try_points(waiting, offsets, degrees, ring, closed, free, x, y, origins, bor
     for v in np.flatnonzero(free):
         keys[v] = star_least(v, offsets, degrees, ring, closed, x, y)
     heap, place, size = filled(keys, np.flatnonzero(waiting))
-    mark, patch = np.full(n, -1), np.empty(n, np.int64)
-    old_x, old_y = np.empty(n), np.empty(n)
-    old, new = np.empty(len(ring)), np.empty(len(ring))
-    widest = int(np.diff(offsets).max())
-    kept = np.empty((min(n, MOST), widest + 1), np.int64)
+    mesh = (offsets, degrees, ring, closed, x, y)
+    patch = np.empty(n, np.int64)
+    kept = np.empty((min(n, MOST), int(np.diff(offsets).max()) + 1), np.int64)
+    vectors = np.empty(len(ring)), np.empty(len(ring))
+    space = (np.full(n, -1), patch, kept, np.empty(n), np.empty(n), *vectors)
     visits = moves = steps = tick = 0
     while size > 0 and visits < budget:
         v, size = pop(heap, place, keys, size)
         if keys[v] >= target:
             size = 0
             break
-        for number in range(1 + 3 * degrees[v]):
-            z, k = born[0], degrees[v]
+        k = degrees[v]
+        for number in range(1 + 3 * k):
             inserts = 1 <= number <= 2 * k
-            if inserts and z >= n:
-                continue
+            z = born[0] if inserts else -1
             dies = v if number == 0 else ring[offsets[v] + (number - 1) % k]
-            if not inserts and not free[dies]:
+            if z >= n or not (inserts or free[dies]):
                 continue
             tick += 1
-            many, count = watch(v, offsets, degrees, ring, free, mark, tick, patch)
-            if count > len(kept):
-                break
-            save(count, patch, offsets, degrees, ring, x, y, kept, old_x, old_y)
-            m = vector_of(patch, count, offsets, degrees, ring, closed, x, y, mark, tick, old)
-            done = operation(number, v, z, offsets, degrees, ring, closed, x, y)
-            gone = -1
-            if done:
-                alive = 0
-                for i in range(many):
-                    if degrees[patch[i]] > 0:
-                        alive += 1
-                    else:
-                        gone = i
-                if gone >= 0:  # smoothed are the first ones
-                    patch[gone], patch[many - 1] = patch[many - 1], patch[gone]
-                    old_x[gone], old_x[many - 1] = old_x[many - 1], old_x[gone]
-                    old_y[gone], old_y[many - 1] = old_y[many - 1], old_y[gone]
-                    for j in range(widest + 1):
-                        kept[gone, j], kept[many - 1, j] = kept[many - 1, j], kept[gone, j]
-                if inserts:
-                    one = np.full(1, z)
-                    mark[z] = tick
-                    moved = 0
-                    for _ in range(2):
-                        moved += smooth_patch(one, 1, 2, *SHARP, offsets, degrees, ring, x, y)
-                        moved += smooth_patch(
-                            patch, alive, ROUNDS // 2, *SHARP, offsets, degrees, ring, x, y
-                        )
-                    patch[count] = z
-                else:
-                    moved = smooth_patch(patch, alive, ROUNDS, *SHARP, offsets, degrees, ring, x, y)
-                visits += alive * ROUNDS
-                after = vector_of(
-                    patch, count + inserts, offsets, degrees, ring, closed, x, y, mark, tick, new
-                )
-                if is_better(old, m, new, after):
-                    steps += 1
-                    moves += moved
-                    if inserts:
-                        born[0] += 1
-                        free[z], origins[z] = True, origins[v]
-                    elif gone >= 0:
-                        free[patch[many - 1]] = False
-                    for i in range(count + inserts):
-                        s = patch[i]
-                        if free[s]:
-                            key = star_least(s, offsets, degrees, ring, closed, x, y)
-                            size = put(heap, place, keys, size, s, key)
-                        elif place[s] >= 0:  # it is gone: it comes last
-                            size = put(heap, place, keys, size, s, np.inf)
-                    break
-            restore(count, patch, offsets, degrees, ring, x, y, kept, old_x, old_y)
+            better, seen, moved, count, gone = attempt(number, v, z, tick, mesh, free, space)
+            visits += seen
+            if not better:
+                continue
+            steps += 1
+            moves += moved
             if inserts:
-                degrees[z], closed[z] = 0, False
+                born[0] += 1
+                free[z], origins[z] = True, origins[v]
+            if gone >= 0:
+                free[gone] = False
+            size = look_again(patch, count, mesh, free, keys, heap, place, size)
+            break
     waiting[:] = (place >= 0) & free
     return visits, moves, steps, size == 0

@@ -33,9 +33,21 @@ def least_angles(points: npt.ArrayLike, triangles: npt.ArrayLike) -> Floats:
     ``points``: (n, 2); ``triangles``: (m, 3).
     """
     xy = np.ascontiguousarray(points, dtype=np.float64)
-    exponent = int(np.frexp(np.abs(xy).max(initial=0.0))[1])
-    least: Floats = _least(np.ldexp(xy, -exponent), np.asarray(triangles, dtype=np.int64))
+    corners = np.asarray(triangles, dtype=np.int64)
+    exponent = int(np.frexp(_greatest(xy, corners))[1])
+    with np.errstate(over="ignore"):  # of vertices that no triangle uses
+        least: Floats = _least(np.ldexp(xy, -exponent), corners)
     return least
+
+
+@compiled
+def _greatest(xy, triangles):
+    greatest = 0.0
+    for t in range(len(triangles)):
+        for k in range(3):
+            v = triangles[t, k]
+            greatest = max(greatest, abs(xy[v, 0]), abs(xy[v, 1]))
+    return greatest
 
 
 @compiled

@@ -156,6 +156,7 @@ def with_places(mesh: Mesh, count: int) -> Mesh:
             np.concatenate([stars.ring, np.full(ROOM * count, -1)]),
             np.concatenate([stars.closed, none.astype(np.bool_)]),
         ),
+        mesh.kept,
     )
 
 

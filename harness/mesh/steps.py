@@ -205,18 +205,24 @@ def try_flips(waiting, offsets, degrees, ring, closed, free, x, y, ideal, target
         if keys[v] >= target:
             size = 0
             break
-        count = candidates(v, offsets, degrees, ring, closed, x, y, ideal, ends, scores)
-        for c in range(count):
+        found = candidates(v, offsets, degrees, ring, closed, x, y, ideal, ends, scores)
+        for c in range(found):
             u, w, a, b = ends[c]
             tick += 1
             many = gather(v, RADIUS, offsets, degrees, ring, free, mark, tick, patch)
             for i in range(many):
                 old_x[i], old_y[i] = x[patch[i]], y[patch[i]]
-            m = vector_of(patch, many, offsets, degrees, ring, closed, x, y, mark, tick, old)
+            count = many  # a triangle that changes may have fixed vertices only
+            for s in (u, w, a, b):
+                if mark[s] != tick:
+                    mark[s] = tick
+                    patch[count] = s
+                    count += 1
+            m = vector_of(patch, count, offsets, degrees, ring, closed, x, y, mark, tick, old)
             flip(u, w, a, b, offsets, degrees, ring, closed)
             moved = smooth_patch(patch, many, ROUNDS, *SHARP, offsets, degrees, ring, x, y)
             visits += many * ROUNDS
-            k = vector_of(patch, many, offsets, degrees, ring, closed, x, y, mark, tick, new)
+            k = vector_of(patch, count, offsets, degrees, ring, closed, x, y, mark, tick, new)
             if is_better(old, m, new, k):
                 flips += 1
                 moves += moved

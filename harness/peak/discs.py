@@ -134,7 +134,7 @@ def meet(centres: npt.ArrayLike, radii: npt.ArrayLike) -> Meet:
         raise UserError(f"disc {wrong[0]} (counting from 0) has no finite positive radius")
     _, distinct = np.unique(np.column_stack([z, radius]), axis=0, return_index=True)
     circles = of_discs(z[distinct], radius[distinct])
-    slabs = intersect(len(distinct), _Present(circles))
+    slabs = intersect(len(distinct), Present(circles))
     if not len(slabs.region):
         return Meet(np.empty((0, 2)), slabs.upper, slabs.lower)
     corners = joined(slabs.left, slabs.right.take(np.array([-1])))
@@ -142,24 +142,28 @@ def meet(centres: npt.ArrayLike, radii: npt.ArrayLike) -> Meet:
     return Meet(np.stack([x, y], axis=1), distinct[slabs.upper], distinct[slabs.lower])
 
 
-class _Present:
+class Present:
     """The judge of given circles."""
 
     def __init__(self, circles: Circles) -> None:
+        """``circles``: all of them, by number."""
         self.circles = circles
 
     def _x(self, v: Vertices) -> Floats:
         return crossing(self.circles.take(v.one), self.circles.take(v.other), v.side)[0]
 
     def cross(self, one: Ints, other: Ints) -> Booleans:
+        """See :class:`Judge`."""
         return crossing_margin(self.circles.take(one), self.circles.take(other)) > 0
 
     def is_left(self, v: Vertices, w: Vertices) -> Booleans:
+        """See :class:`Judge`."""
         return self._x(v) < self._x(w)
 
     def is_below(
         self, v: Vertices, w: Vertices, one: Ints, other: Ints, halves: tuple[bool, bool]
     ) -> Booleans:
+        """See :class:`Judge`."""
         x = (self._x(v) + self._x(w)) / 2
         first, second = (
             ordinate(self.circles.take(k), x, np.full(len(x), half))

@@ -71,10 +71,8 @@ def _roots(a: Ball, b: Ball, d: Ball) -> list[Ball] | None:
     square = b * b - a * d
     if square < 0:
         return []
-    if square.contains(0):
-        square = square.union(arb(0))
-        square = arb(0).union(square.upper())
-    root = square.sqrt()
+    # The square root of a ball that reaches below 0, be it by a rounding, is no number.
+    root = arb(0).union(square.upper().sqrt()) if square.contains(0) else square.sqrt()
     if b > 0:
         root = -root
     w = root - b  # the sum that does not cancel

@@ -24,7 +24,26 @@ def summary_lines(directory: Path) -> list[str]:
 
 
 def report_with_lines(directory: Path) -> tuple[Path, list[str]]:
-    """Both of the above from one analysis."""
+    """Both of the above from one analysis; also of meshes, of an audit, and of all of these.
+
+    Of a directory that holds studies and is none, one page about all of them.
+    """
+    from harness.audit.store import is_audit
+    from harness.report.combined import is_collection
+    from harness.study.mesh_rows import is_mesh_study
+
+    if is_collection(directory):
+        from harness.report.combined import write_collection
+
+        return write_collection(directory)
+    if is_audit(directory):
+        from harness.report.audit_page import write_audit_page
+
+        return write_audit_page(directory)
+    if is_mesh_study(directory):
+        from harness.report.mesh_report import write_mesh_report
+
+        return write_mesh_report(directory)
     from harness.report.build import read, write
 
     study = read(directory)

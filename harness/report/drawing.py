@@ -7,13 +7,11 @@ diagram, whatever the user's settings of matplotlib are.
 
 from __future__ import annotations
 
-import io
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -22,22 +20,13 @@ from harness.diagram.planar_map import PlanarMap, Window
 from harness.errors import UserError
 from harness.report.drawing_layers import Layers
 from harness.report.drawing_shapes import checked_window, framed, natural_window
-from harness.report.style import FALLBACK, SETTINGS
-
-FORMATS = ("svg", "png", "pdf")
-RESOLUTION = 200  # dots per inch of a PNG
+from harness.report.style import FORMATS, in_style, saved
 
 #: A kernel that is smaller than this part of its polygon is shown once more, enlarged.
 SMALL_KERNEL = 0.5
 #: Inches: around the panels, for a line of the caption or the title, for the legend's lines.
 PAD, TEXT_LINE, LEGEND_LINE = 0.08, 0.26, 0.19
 LEGEND_COLUMN = 1.3
-
-_NO_DATES: dict[str, dict[str, Any]] = {
-    "svg": dict.fromkeys(("Date", "Creator", "Format", "Type")),
-    "png": {"Software": None},
-    "pdf": dict.fromkeys(("CreationDate", "Creator", "Producer")),
-}
 
 
 @dataclass(frozen=True)
@@ -142,16 +131,9 @@ def render(diagram: PlanarMap, form: str = "svg", **options: Any) -> bytes:
     """The bytes of a picture in one of the ``FORMATS``; ``options`` are those of ``picture``."""
     if form not in FORMATS:
         raise UserError(f"cannot draw {form!r}: choose from {', '.join(FORMATS)}")
-    with mpl.rc_context():
-        mpl.rcdefaults()
-        mpl.rcParams.update(SETTINGS)
-        # Curves are as fine as they need to be already.
-        mpl.rcParams.update({"path.simplify": False, "hatch.linewidth": 0.6})
-        figure = picture(diagram, **options)
-        buffer = io.BytesIO()
-        figure.savefig(buffer, format=form, dpi=RESOLUTION, metadata=_NO_DATES[form])
-    data = buffer.getvalue()
-    return data.replace(b"'DejaVu Sans'", FALLBACK.encode()) if form == "svg" else data
+    # Curves are as fine as they need to be already.
+    with in_style({"path.simplify": False, "hatch.linewidth": 0.6}):
+        return saved(picture(diagram, **options), form)
 
 
 def counts_line(diagram: PlanarMap, panels: Sequence[Panel] = ()) -> str:

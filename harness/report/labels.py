@@ -8,6 +8,8 @@ from collections.abc import Sequence
 
 from harness.analysis import Key
 
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
 
 def curve_labels(keys: Sequence[Key]) -> list[str]:
     """A short, unambiguous label for each group of a study.
@@ -58,7 +60,8 @@ def number(value: float | None, digits: int = 3) -> str:
     text = f"{value:.{digits}g}"
     if "e" in text:  # too small, or too large, for a table of decimals
         mantissa, exponent = text.split("e")
-        return f"{mantissa}·10^{int(exponent)}".replace("-", "−")
+        raised = str(int(exponent)).translate(_RAISED)
+        return f"{mantissa}·10{raised}".replace("-", "−")
     return text.replace("-", "−")
 
 
@@ -89,6 +92,6 @@ def sizes(values: Sequence[float]) -> str:
     return f"{values[0]:g} … {values[-1]:g} ({len(values)} sizes)"
 
 
-def plural(count: int, noun: str) -> str:
-    """1 task, 2 tasks."""
-    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+def plural(count: int, noun: str, many: str = "") -> str:
+    """1 task, 2 tasks; ``many`` where an s is not enough."""
+    return f"{count} {noun}" if count == 1 else f"{count} {many or noun + 's'}"

@@ -7,11 +7,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from harness.mesh.apex import greedy
 from harness.mesh.mesh import Mesh
-from harness.mesh.quality import corner_angles
+from harness.mesh.quality import corner_angles, quality_of
 from harness.peak import peak
 from harness.report.style import BLUE, GREEN, GREY, PALE, VERMILLION
 
@@ -22,6 +24,8 @@ INNER = [(1.6, 6.0), (8.2, 2.0), (4.4, 1.2)]
 STAR = [(0, 0), (4, -2), (7.5, 0), (7, 3.5), (10.5, 6), (4.6, 5.2), (-0.6, 5.4)]
 EAR = 4
 """The vertex of the star that a chord cuts off."""
+SHOWN = 120
+"""Inner vertices of the mesh in the picture."""
 
 
 def plain(axes: Axes, points: Any, triangles: Any, label: str) -> None:
@@ -87,6 +91,28 @@ def draw_figure_6(figure: Figure) -> None:
         axes.plot(*place, "o", color=VERMILLION, markersize=5)
 
 
+def draw_meshes(figure: Figure) -> None:
+    """A random mesh, and what the paper's greedy, all angles and changes of edges make of it."""
+    from generators.triangulations import random_mesh
+    from harness.mesh.door import improve
+    from harness.report.mesh_drawing import BEST, COLOURS, draw_mesh
+
+    points, triangles = random_mesh(SHOWN, 0)
+    results = {
+        "apex": improve(points, triangles, objective="apex"),
+        "all": improve(points, triangles),
+        "all, full": improve(points, triangles, topology="full"),
+    }
+    shots = [("before", points, triangles, quality_of(points, triangles).smallest)]
+    shots += [(name, r.points, r.triangles, r.after.smallest) for name, r in results.items()]
+    grid = figure.subplots(1, len(shots))
+    for axes, (name, xy, corners, smallest) in zip(grid, shots, strict=True):
+        draw_mesh(axes, xy, corners, width=3.0)
+        axes.set_title(f"{name}: {smallest:.1f}°")
+    scale = ScalarMappable(Normalize(0, BEST), COLOURS)
+    figure.colorbar(scale, ax=list(grid), shrink=0.7, label="smallest angle (°)")
+
+
 def draw_histograms(figure: Figure, panels: list[tuple[str, list[int], list[int]]]) -> None:
     """Shares of all angles before and after, one panel for each method."""
     columns = 5
@@ -117,6 +143,7 @@ def draw_sweeps(figure: Figure, lines: dict[str, list[list[float]]]) -> None:
             axes.plot(range(1, len(values) + 1), values, style, label=method)
         axes.set_title(names[k], fontsize=8)
         axes.set_xlabel("sweep")
+        axes.set_xscale("log")
         axes.grid(visible=True)
     figure.axes[0].set_ylabel("degrees")
     figure.axes[-1].legend(fontsize=6, loc="lower right")

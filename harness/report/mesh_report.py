@@ -1,166 +1,234 @@
-"""The report of the mesh study: one page that opens offline, with its figures beside it."""
+"""The report of the study of meshes: one page that opens offline, with its figures beside it."""
 
 from __future__ import annotations
 
-import html
 import json
-import statistics
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
+from typing import Any
 
+from jinja2 import Environment, PackageLoader, StrictUndefined
 from matplotlib.figure import Figure
 
+from harness.analysis.meshes import PLAIN, MethodFindings, answer, findings, lines, median
 from harness.errors import UserError
 from harness.files import replace
-from harness.report import mesh_figures
+from harness.report import mesh_figures, provenance
+from harness.report.build import REPORT
+from harness.report.labels import number
+from harness.report.sections import Cell, Table
 from harness.report.style import inline, render
-from harness.study.meshes import FIGURES, METHODS, read_meshes
+from harness.study.manifest import read_manifest
+from harness.study.mesh_rows import read_meshes
+from harness.study.meshes import DESCRIPTION, FIGURES, NAME
+from harness.study.outcome import STATUSES
+from harness.study.progress import tally
 
 Row = dict[str, str]
-PAPER, BEST = "apex", "all"
-GAIN = 1e-6
-"""Degrees that count as better."""
-
-STYLE = """
-body{font-family:'DejaVu Sans',Verdana,sans-serif;max-width:62rem;margin:2rem auto;padding:0 1rem}
-table{border-collapse:collapse}th,td{padding:.15rem .7rem;text-align:right}
-th:first-child,td:first-child{text-align:left}svg{max-width:100%;height:auto}
-figcaption{color:#555;margin-bottom:1.5rem}
-"""
+Drawn = tuple[Callable[[Figure], None], float, float, str]
+"""How a figure is drawn, its size in inches, its caption."""
+PER = 1000
+"""Triangles to which times are related."""
+MIDDLE = 8.0
+"""Inches; figures that are wider fill the page."""
 
 
 def write_mesh_report(directory: Path) -> tuple[Path, list[str]]:
     """Write ``report.html`` and ``figures/``; returns the page and its conclusions.
 
-    The same rows give the same bytes.  Raises UserError if there are no rows.
+    The same rows and manifest give the same bytes.  Raises UserError if there are no rows.
     """
     rows = read_meshes(directory)
-    if not rows:
-        raise UserError(f"{directory}: there are no rows to report on")
-    lines = conclusions(rows)
-    parts = ["<h1>Mesh improvement: does it pay?</h1>"]
-    parts += [f"<p>{html.escape(line)}</p>" for line in lines]
-    for family in dict.fromkeys(row["family"] for row in rows):
-        parts.append(_table([row for row in rows if row["family"] == family], family))
-    (directory / "figures").mkdir(exist_ok=True)
-    for name, (draw, width, height, caption) in _figures(rows).items():
-        svg = render(draw, width, height)
-        replace(directory / "figures" / f"{name}.svg", svg.encode())
-        shown = inline(svg, name, caption)
-        parts.append(f"<figure>{shown}<figcaption>{html.escape(caption)}</figcaption></figure>")
-    page = directory / "report.html"
-    head = f"<!doctype html><html lang=en><meta charset=utf-8><title>meshes</title><style>{STYLE}"
-    replace(page, "\n".join([head + "</style>", *parts, "</html>\n"]).encode())
-    return page, lines
+    done = [row for row in rows if row["status"] == "ok"]
+    if not done:
+        raise UserError(f"{directory}: there are no finished rows to report on")
+    found = findings(rows)
+    measured = _render(directory, _figures(done))
+    paper = _render(directory, _paper_figures())
+    environment = Environment(
+        loader=PackageLoader("harness.report"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    manifest = read_manifest(directory)
+    page = environment.get_template("meshes.html").render(
+        name=NAME,
+        description=DESCRIPTION,
+        tasks=_tasks(rows, manifest),
+        answer=answer(found),
+        findings=findings_table(found),
+        sizes=[_size_table(done, *group) for group in _groups(done)],
+        figures=measured,
+        paper=paper,
+        provenance=provenance.entries(manifest),
+    )
+    replace(directory / REPORT, (page + "\n").encode())
+    return directory / REPORT, lines(found)
 
 
-def conclusions(rows: list[Row]) -> list[str]:
-    """What the rows say about the paper's question, method by method."""
-    lines = [
-        "The paper asks whether moving vertices to the peaks of visual angles is useful in "
-        "practice. Counted over the meshes of this study:"
+def _tasks(rows: Sequence[Row], manifest: Any) -> str:
+    planned = (manifest or {}).get("tasks", len(rows))
+    counts = tally({status: sum(row["status"] == status for row in rows) for status in STATUSES})
+    return f"{len(rows)} of {planned} tasks have a row: {counts}."
+
+
+def findings_table(found: Sequence[MethodFindings]) -> Table:
+    """The methods side by side: one line each, from all meshes of the study."""
+    head = ["method", "meshes", "up", "down", "inverted", "failed", "smallest angle before"]
+    head += ["after", "iterations ×", "error ×"]
+    head += ["greater smallest angle", "fewer iterations", "less error", "time ×"]
+    rows = [
+        [
+            Cell(each.method),
+            *(_cell(value) for value in (each.meshes, each.rose)),
+            _cell(each.fell, "bad" if each.fell else ""),
+            _cell(each.inverted, "bad" if each.inverted else ""),
+            _cell(each.failed, "warn" if each.failed else ""),
+            *(_degrees(value) for value in (each.smallest_before, each.smallest)),
+            *(_cell(value) for value in (each.iterations, each.error)),
+            *(
+                Cell(f"{count} of {each.compared}", str(count), _kind(each, purpose))
+                for purpose, count in each.better.items()
+            ),
+            _cell(each.slower),
+        ]
+        for each in found
     ]
-    for method in METHODS:
-        mine = [row for row in rows if row["method"] == method]
-        if not mine:
-            continue
-        gains = [float(row["smallest"]) - float(row["smallest_before"]) for row in mine]
-        better = sum(gain > GAIN for gain in gains)
-        worse = sum(gain < -GAIN for gain in gains)
-        inverted = sum(int(row["inverted"]) > 0 for row in mine)
-        lines.append(
-            f"{method}: the smallest angle rose in {better} of {len(mine)} meshes, fell in {worse}"
-            + (f", and triangles were inverted in {inverted}" if inverted else "")
-            + f"; median of the smallest angle {_median(mine, 'smallest'):.2f}°, "
-            f"of the mean of the triangles' least angles {_median(mine, 'mean'):.2f}°."
+    caption = f"What each method did; the last four columns: beside {PLAIN} on the same meshes"
+    return Table(caption, head, rows)
+
+
+def _kind(each: MethodFindings, purpose: str) -> str:
+    return "good" if purpose in each.pays_for else ""
+
+
+def _cell(value: float | None, kind: str = "") -> Cell:
+    return Cell(number(value), "" if value is None else f"{value:.9g}", kind)
+
+
+def _degrees(value: float) -> Cell:
+    return Cell(f"{value:.2f}", f"{value:.9g}")
+
+
+def _groups(rows: Sequence[Row]) -> list[tuple[str, str]]:
+    return list(dict.fromkeys((row["family"], row["n"]) for row in rows))
+
+
+def _size_table(rows: Sequence[Row], family: str, n: str) -> Table:
+    """Medians over the meshes of one family and size, one line for each method."""
+    same = [row for row in rows if (row["family"], row["n"]) == (family, n)]
+    head = ["method", *(name.replace("_", " ") for name in FIGURES), "iterations", "error"]
+    first = [
+        Cell("before"),
+        *(_degrees(median(same, f"{name}_before")) for name in FIGURES),
+        *(_cell(_known(same, f"{name}_before")) for name in ("iterations", "error")),
+        Cell("–"),
+    ]
+    lines_ = [first]
+    for method in dict.fromkeys(row["method"] for row in same):
+        mine = [row for row in same if row["method"] == method]
+        seconds = median(mine, "seconds") * PER / median(mine, "triangles")
+        lines_.append(
+            [
+                Cell(method),
+                *(_degrees(median(mine, name)) for name in FIGURES),
+                *(_cell(_known(mine, name)) for name in ("iterations", "error")),
+                _cell(seconds),
+            ]
         )
-    return lines
+    meshes = len({row["seed"] for row in same})
+    caption = f"{family}, n = {n}: medians of {meshes} meshes"
+    return Table(caption, [*head, f"seconds for {PER} triangles"], lines_)
 
 
-def _median(rows: list[Row], column: str) -> float:
-    return statistics.median(float(row[column]) for row in rows)
+def _known(rows: Sequence[Row], column: str) -> float | None:
+    there = [row for row in rows if row[column]]
+    return median(there, column) if there else None
 
 
-def _table(rows: list[Row], family: str) -> str:
-    """Medians over the meshes of one family, one line for each n and method."""
-    heads = ["method", "n", *FIGURES, "seconds"]
-    lines = [f"<h2>{html.escape(family)}</h2><table><tr>"]
-    lines += [f"<th>{head.replace('_', ' ')}</th>" for head in heads]
-    lines.append("</tr>")
-    for n in dict.fromkeys(row["n"] for row in rows):
-        same = [row for row in rows if row["n"] == n]
-        before = [f"{_median(same, f'{name}_before'):.3f}" for name in FIGURES]
-        lines.append(_line(["before", n, *before, "–"]))
-        for method in dict.fromkeys(row["method"] for row in same):
-            mine = [row for row in same if row["method"] == method]
-            after = [f"{_median(mine, name):.3f}" for name in FIGURES]
-            lines.append(_line([method, n, *after, f"{_median(mine, 'seconds'):.3g}"]))
-    return "".join([*lines, "</table><p>Medians, in degrees.</p>"])
+def _render(directory: Path, figures: dict[str, Drawn]) -> list[dict[str, str]]:
+    """Write the figures; what the page shows of each."""
+    shown = []
+    (directory / "figures").mkdir(exist_ok=True)
+    for name, (draw, width, height, caption) in figures.items():
+        svg = render(draw, width, height)
+        path = f"figures/{name}.svg"
+        replace(directory / path, svg.encode())
+        kind = "wide" if width > MIDDLE else "middle"
+        picture = inline(svg, name, caption)
+        shown.append({"svg": picture, "caption": caption, "path": path, "kind": kind})
+    return shown
 
 
-def _line(cells: list[str]) -> str:
-    return "<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in cells) + "</tr>"
-
-
-Drawn = tuple[Callable[[Figure], None], float, float, str]
-
-
-def _figures(rows: list[Row]) -> dict[str, Drawn]:
-    """Name → how it is drawn, its size in inches, its caption."""
+def _figures(rows: Sequence[Row]) -> dict[str, Drawn]:
     figures: dict[str, Drawn] = {}
     for family in dict.fromkeys(row["family"] for row in rows):
         mine = [row for row in rows if row["family"] == family]
         largest = max(mine, key=lambda row: int(row["n"]))["n"]
-        shown = [row for row in mine if row["n"] == largest and row["seed"] == "0"]
+        seed = min(int(row["seed"]) for row in mine if row["n"] == largest)
+        shown = [row for row in mine if row["n"] == largest and row["seed"] == str(seed)]
         panels = [
             (row["method"], json.loads(row["angles_before"]), json.loads(row["angles"]))
             for row in shown
         ]
-        lines = {row["method"]: json.loads(row["history"]) for row in shown}
-        times = _times(mine)
-        where = f"{family}, n = {largest}, seed 0"
+        histories = {row["method"]: json.loads(row["history"]) for row in shown}
+        where = f"{family}, n = {largest}, seed {seed}"
         figures[f"angles-{family}"] = (
             partial(mesh_figures.draw_histograms, panels=panels),
             11,
             4.5,
-            f"All angles before and after: {where}.",
+            f"All angles of the mesh before and after: {where}.",
         )
         figures[f"sweeps-{family}"] = (
-            partial(mesh_figures.draw_sweeps, lines=lines),
+            partial(mesh_figures.draw_sweeps, lines=histories),
             12,
-            3.2,
-            f"After each sweep: {where}.",
+            3.6,
+            f"After each sweep, or as much work as a sweep's: {where}. Where edges may change, "
+            "moves alone come first and everything begins anew.",
         )
         figures[f"seconds-{family}"] = (
-            partial(mesh_figures.draw_times, times=times),
-            6,
-            4,
-            f"Median seconds: {family}.",
+            partial(mesh_figures.draw_times, times=_times(mine)),
+            7,
+            4.2,
+            f"Median seconds, by the number of triangles: {family}.",
         )
-    figures["figure-5"] = (
-        mesh_figures.draw_figure_5,
-        10,
-        3.4,
-        "As the paper's Figure 5: a mesh, and two steps of the greedy.",
-    )
-    figures["figure-6"] = (
-        mesh_figures.draw_figure_6,
-        10,
-        3.4,
-        "As the paper's Figure 6: a star's kernel, its triangulation, and one without an ear.",
-    )
     return figures
 
 
-def _times(rows: list[Row]) -> dict[str, list[tuple[int, float]]]:
+def _paper_figures() -> dict[str, Drawn]:
+    return {
+        "figure-5": (
+            mesh_figures.draw_figure_5,
+            10,
+            2.6,
+            "As the paper's Figure 5: a mesh, and two steps of the greedy.",
+        ),
+        "figure-6": (
+            mesh_figures.draw_figure_6,
+            10,
+            2.6,
+            "As the paper's Figure 6: a star's kernel, its triangulation, and one without an ear.",
+        ),
+        "meshes": (
+            mesh_figures.draw_meshes,
+            12,
+            3.6,
+            "One mesh and what becomes of it; triangles are coloured by their smallest angle.",
+        ),
+    }
+
+
+def _times(rows: Sequence[Row]) -> dict[str, list[tuple[int, float]]]:
     """For each method the median seconds by the number of triangles."""
-    lines: dict[str, list[tuple[int, float]]] = {}
+    found: dict[str, list[tuple[int, float]]] = {}
     for method in dict.fromkeys(row["method"] for row in rows):
         mine = [row for row in rows if row["method"] == method]
         places = []
         for n in sorted({int(row["n"]) for row in mine}):
             same = [row for row in mine if int(row["n"]) == n]
-            places.append((int(_median(same, "triangles")), _median(same, "seconds")))
-        lines[method] = places
-    return lines
+            places.append((int(median(same, "triangles")), median(same, "seconds")))
+        found[method] = places
+    return found

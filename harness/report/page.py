@@ -16,6 +16,7 @@ from harness.analysis.models import GREATEST_SHARE, LEAST_SHARE
 from harness.analysis.statistics import RESAMPLES
 from harness.report import figures, provenance, summary, tables
 from harness.report.build import REPORT, StudyGrowth
+from harness.report.chapters import Part, chapters
 from harness.report.examples import Example, example
 from harness.report.labels import number, percent, plain, sizes
 from harness.report.sections import Cell, Download, Section, Table, section
@@ -44,8 +45,22 @@ def outputs(study: StudyGrowth) -> dict[str, str]:
         files.update({panel.figure_path: panel.document for panel in part.panels})
         files.update({download.path: download.text for download in part.downloads})
     files.update({download.path: download.text for download in downloads.values()})
-    files[REPORT] = _page(study, sections, checks, downloads, overviews, examples)
+    special = chapters(study.groups)
+    for chapter in special:
+        files.update(chapter.files)
+    files[REPORT] = _page(study, sections, checks, downloads, overviews, examples, special)
     return files
+
+
+def environment() -> Environment:
+    """Where the templates of the pages are found."""
+    return Environment(
+        loader=PackageLoader("harness.report"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
 
 
 def _page(
@@ -55,17 +70,13 @@ def _page(
     downloads: dict[str, Download],
     overviews: list[dict[str, str]],
     examples: Mapping[str, Example | None],
+    special: list[Part],
 ) -> str:
-    environment = Environment(
-        loader=PackageLoader("harness.report"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
     manifest = study.manifest or {}
     return (
-        environment.get_template("report.html").render(
+        environment()
+        .get_template("report.html")
+        .render(
             name=study.name,
             description=str(manifest.get("description") or ""),
             tasks=summary.tasks_sentence(study.groups, study.planned),
@@ -76,8 +87,9 @@ def _page(
             checks=[_check_view(check, labels) for check, labels in checks],
             families=list(_families(study, sections, examples)),
             failures=_failure_table(study),
+            special=special,
             downloads=downloads,
-            method=_method(),
+            method=method_facts(),
             provenance=provenance.entries(study.manifest),
             study_file=study.study_file,
         )
@@ -89,7 +101,8 @@ def _download(title: str, table: pd.DataFrame) -> Download:
     return Download(title, f"data/{title}.csv", tables.to_csv(table))
 
 
-def _method() -> dict[str, str]:
+def method_facts() -> dict[str, str]:
+    """The numbers that the text about the method names."""
     return {
         "level": percent(challenging.LEVEL),
         "confirming": percent(challenging.CONFIRMING_LEVEL),

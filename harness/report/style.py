@@ -5,7 +5,8 @@ from __future__ import annotations
 import hashlib
 import io
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any
 
 import matplotlib as mpl
@@ -43,21 +44,44 @@ SETTINGS: dict[Any, object] = {
 }
 FALLBACK = "'DejaVu Sans', Verdana, Helvetica, sans-serif"
 
+FORMATS = ("svg", "png", "pdf")
+RESOLUTION = 200  # dots per inch of a PNG
+
+#: What would make two files of the same picture differ is left out.
+_NO_DATES: dict[str, dict[str, Any]] = {
+    "svg": dict.fromkeys(("Date", "Creator", "Format", "Type")),
+    "png": {"Software": None},
+    "pdf": dict.fromkeys(("CreationDate", "Creator", "Producer")),
+}
+
+
+def saved(figure: Figure, form: str) -> bytes:
+    """The bytes of a figure in one of the ``FORMATS``, under the settings in force."""
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format=form, dpi=RESOLUTION, metadata=_NO_DATES[form])
+    data = buffer.getvalue()
+    return data.replace(b"'DejaVu Sans'", FALLBACK.encode()) if form == "svg" else data
+
+
+@contextmanager
+def in_style(more: Mapping[Any, object] | None = None) -> Iterator[None]:
+    """The project's settings of matplotlib and ``more``; the user's are back afterwards."""
+    with mpl.rc_context():
+        mpl.rcdefaults()
+        mpl.rcParams.update(SETTINGS)
+        mpl.rcParams.update(dict(more or {}))
+        yield
+
 
 def render(draw: Callable[[Figure], None], width: float, height: float) -> str:
     """The SVG document of a figure, ``width`` × ``height`` inches, filled by ``draw``.
 
     Independent of the user's matplotlib settings, of the date and of figures drawn before.
     """
-    with mpl.rc_context():
-        mpl.rcdefaults()
-        mpl.rcParams.update(SETTINGS)
+    with in_style():
         figure = Figure(figsize=(width, height))
         draw(figure)
-        buffer = io.StringIO()
-        nothing = dict.fromkeys(("Date", "Creator", "Format", "Type"))
-        figure.savefig(buffer, format="svg", metadata=nothing)
-    return slim(buffer.getvalue().replace("'DejaVu Sans'", FALLBACK))
+        return slim(saved(figure, "svg").decode())
 
 
 def inline(svg: str, prefix: str, description: str) -> str:

@@ -79,7 +79,14 @@ class RunRecord:
     """The manifest of a run under way: written when it starts and when it ends."""
 
     def __init__(
-        self, directory: Path, study: Study, *, command: str, engine: str, jobs: int
+        self,
+        directory: Path,
+        study: Study,
+        *,
+        command: str,
+        engine: str,
+        jobs: int,
+        seeds: str = SEED_RULE,
     ) -> None:
         """Open an entry for this run; earlier ones without an end were killed."""
         earlier = (read_manifest(directory) or {}).get("runs", [])
@@ -108,7 +115,7 @@ class RunRecord:
             "machine": machine(),
             "command": command,
             "base_seed": study.base_seed,
-            "seeds": SEED_RULE,
+            "seeds": seeds,
             "limits": {"time": study.limits.seconds, "memory_mib": study.limits.mib},
             "tasks": len(study.tasks),
             "statuses": {},

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from harness.errors import UserError
 from harness.study.manifest import read_manifest
+from harness.study.mesh_rows import is_mesh_study
 from harness.study.outcome import COLUMNS, COUNT_COLUMNS
 from harness.study.store import ROWS, read_rows
 
@@ -37,6 +38,10 @@ def load(directory: Path | str) -> pd.DataFrame:
     folder = Path(directory)
     if not (folder / ROWS).exists():
         raise UserError(f"{folder}: no study here ({ROWS} is missing)")
+    if is_mesh_study(folder):
+        raise UserError(
+            f"{folder}: holds a study of meshes; harness.study.mesh_rows.read_meshes reads its rows"
+        )
     read_manifest(folder)  # refuses one from a newer program
     table = pd.DataFrame(read_rows(folder / ROWS), columns=list(COLUMNS), dtype=str)
     try:

@@ -30,7 +30,7 @@ from harness.study.interrupt import interruptible
 from harness.study.isolate import Work
 from harness.study.lock import LOCK, locked
 from harness.study.manifest import MANIFEST, RunRecord, read_manifest
-from harness.study.outcome import Outcome, row_of
+from harness.study.outcome import Outcome, one_line, row_of
 from harness.study.processors import default_jobs
 from harness.study.progress import Progress
 from harness.study.schema import Record
@@ -94,10 +94,10 @@ def run_study(
     """
     if engine == "dask":
         check_dask()
-    _claim(directory)
+    claim(directory)
     with locked(directory):
         if mode == "fresh":
-            _move_to_earlier(directory)
+            move_to_earlier(directory)
         read_manifest(directory)  # refuse a newer one before anything is written
         plan = _plan(study, directory, retry=mode == "retry")
         if mode == "new" and plan.kept and not plan.is_noop:
@@ -145,7 +145,7 @@ def _run(
         ):
             for task, outcome in results:
                 rows.append(row_of(task, outcome))
-                _log_failure(directory, task, outcome)
+                log_failure(directory, f"{task.key} {task.family} n={task.n}", outcome)
                 statuses[outcome.status] += 1
                 progress.update(statuses)
         finished = len(rows.rows) == len(study.tasks)
@@ -232,7 +232,7 @@ def _unfinished(study: Study, directory: Path, plan: _Plan, resume_command: str)
     )
 
 
-def _claim(directory: Path) -> None:
+def claim(directory: Path) -> None:
     """Make the directory, or make sure that it is a study's.  Raises UserError."""
     if directory.exists() and not directory.is_dir():
         raise UserError(f"{directory}: is not a directory")
@@ -242,7 +242,7 @@ def _claim(directory: Path) -> None:
         raise UserError(f"{directory}: the directory is not empty and holds no study")
 
 
-def _move_to_earlier(directory: Path) -> None:
+def move_to_earlier(directory: Path) -> None:
     """Move the study that is there into a directory of its own; nothing is deleted."""
     files = [directory / name for name in (ROWS, ASIDE, MANIFEST, STUDY, FAILURES)]
     stamp = datetime.now(UTC).strftime("%Y%m%dT%H%M%S.%fZ")
@@ -253,11 +253,11 @@ def _move_to_earlier(directory: Path) -> None:
         os.replace(file, target / file.name)
 
 
-def _log_failure(directory: Path, task: Task, outcome: Outcome) -> None:
+def log_failure(directory: Path, name: str, outcome: Outcome) -> None:
+    """Add to the failure log what a task that failed has left behind."""
     if outcome.status == "ok":
         return
-    row = row_of(task, outcome)
-    lines = [f"{task.key} {task.family} n={task.n} {outcome.status}: {row['message']}"]
+    lines = [f"{name} {outcome.status}: {one_line(outcome.message)}"]
     lines += [f"    {line}" for line in outcome.detail.splitlines()]
     with open(directory / FAILURES, "a", encoding="utf-8") as log:
         log.write("\n".join(lines) + "\n")

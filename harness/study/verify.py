@@ -25,7 +25,7 @@ from harness.study.interrupt import interruptible
 from harness.study.isolate import Work
 from harness.study.limits import Limits
 from harness.study.manifest import read_manifest
-from harness.study.meshes import is_mesh_study
+from harness.study.mesh_rows import is_mesh_study
 from harness.study.outcome import COUNT_COLUMNS, Outcome, row_of
 from harness.study.processors import default_jobs
 from harness.study.recount import Choice, recount

@@ -72,6 +72,23 @@ def test_the_bound_holds_for_every_placement() -> None:
     assert upper_bound(better.points, triangles, reach=2) >= here - 1e-5
 
 
+@pytest.mark.parametrize("nested", [1, 2, 3])
+def test_nested_vertices_bound_the_smallest_angle(nested) -> None:
+    from harness.mesh.bound import upper_bound
+
+    # The best outer triangle: its angles are as the numbers of parts that they fall into.
+    height = 0.5 * np.tan(np.pi * (1 + nested) / (4 + 2 * nested))
+    points = [(0.0, 0.0), (1.0, 0.0), (0.5, height)]
+    triangles = [(0, 1, 2)]
+    for v in range(3, 3 + nested):  # into the last triangle, which has two vertices of the first
+        a, b, c = triangles.pop()
+        points.append(tuple(np.mean([points[a], points[b], points[c]], axis=0)))
+        triangles += [(b, c, v), (c, a, v), (a, b, v)]
+    bound = upper_bound(np.array(points), np.array(triangles), reach=9)
+    assert bound == pytest.approx(180 / (4 + 2 * nested), abs=1e-6)
+    assert improve(points, triangles).after.smallest <= bound + 1e-6
+
+
 @pytest.mark.parametrize("name", TRIANGULATIONS)
 def test_the_meshes_are_meshes_and_the_same_every_time(name) -> None:
     from harness.mesh import Mesh

@@ -75,6 +75,36 @@ def test_mistakes_end_with_one_line(source, tmp_path, capsys) -> None:
         assert exit_.value.code == 2
 
 
+def test_regions_are_chosen_on_the_command_line(tmp_path, capsys) -> None:
+    points, triangles = random_mesh(80)
+    space = np.column_stack([points, np.zeros(len(points))])
+    here = points[triangles].mean(axis=1)[:, 0] > 0.5
+    mesh = meshio.Mesh(space, [("triangle", triangles)], cell_data={"part": [here * 1]})
+    meshio.write(tmp_path / "in.vtu", mesh)
+    arguments = ["mesh", "improve", str(tmp_path / "in.vtu"), str(tmp_path / "out.vtu"), "--json"]
+    arguments += ["--quiet", "--topology", "flip"]
+    found = {}
+    for name, more in {
+        "default": [],
+        "named": ["--regions", "part"],
+        "none": ["--ignore-interfaces"],
+    }.items():
+        assert main([*arguments, *more]) == 0
+        found[name] = json.loads(capsys.readouterr().out)
+    assert found["default"]["interface_edges"] == found["named"]["interface_edges"] > 0
+    assert found["none"]["interface_edges"] == 0
+    assert main([*arguments, "--regions", "part,parts"]) == 1
+    assert "no cell data 'parts'" in capsys.readouterr().err
+
+
+def test_what_cannot_be_written_is_said_before_the_work(source, tmp_path, capsys) -> None:
+    for target in (tmp_path / "none" / "out.vtk", tmp_path / "out.strange", tmp_path):
+        assert main(["mesh", "improve", str(tmp_path / "unread.vtk"), str(target)]) == 1
+        assert str(target) in capsys.readouterr().err
+    assert main(["mesh", "improve", str(source), str(tmp_path / "out.off"), "--quiet"]) == 0
+    assert "not in the file: point data heat" in capsys.readouterr().err
+
+
 def test_an_interrupted_run_leaves_the_old_file(tmp_path) -> None:
     points, triangles = random_mesh(20_000)
     space = np.column_stack([points, np.zeros(len(points))])

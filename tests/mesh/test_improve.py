@@ -98,6 +98,18 @@ def test_the_result_does_not_depend_on_the_workers(workers) -> None:
     assert (one.points == more.points).all()
 
 
+@pytest.mark.parametrize(
+    "options",
+    [{"objective": "combined"}, {"objective": "apex"}, {"topology": "flip"}, {"topology": "full"}],
+)
+def test_nor_does_that_of_the_other_methods(options) -> None:
+    points, triangles = random_mesh(1500)
+    one = improve(points, triangles, sweeps=3, workers=1, **options)
+    more = improve(points, triangles, sweeps=3, workers=2, **options)
+    assert (one.points == more.points).all()
+    assert (one.triangles == more.triangles).all()
+
+
 def test_random_meshes_reach_what_is_asked() -> None:
     better = improve(*random_mesh(1000))
     assert better.after.smallest >= 29.5
@@ -145,3 +157,28 @@ def test_sweeps_are_told_as_they_happen() -> None:
 def test_wrong_options_are_named(options, message) -> None:
     with pytest.raises(UserError, match=message):
         improve(*grid_mesh(2), **options)
+
+
+@pytest.mark.parametrize("scale", [8e307, 1e-307, 1e-318])
+@pytest.mark.parametrize("topology", ["fixed", "full"])
+def test_the_ends_of_doubles_are_in_reach(scale, topology) -> None:
+    points, triangles = random_mesh(40, 3)
+    better = improve(points * scale, triangles, topology=topology)
+    assert is_positive(better.points, better.triangles)
+    assert better.after.smallest > better.before.smallest
+
+
+def test_a_mesh_beyond_doubles_is_refused() -> None:
+    points, triangles = random_mesh(40, 3)
+    with pytest.raises(UserError, match=r"point \d+ .* range of doubles"):
+        improve(points * [1e300, 1e-300], triangles)
+    flat = improve(points * [1e100, 1e-60], triangles)
+    assert 0 <= flat.after.smallest < 1e-100
+
+
+def test_vertices_that_no_triangle_uses_do_not_matter() -> None:
+    points, triangles = random_mesh(40, 3)
+    far = np.concatenate([points, [[1e300, -1e-300]]])
+    plain, more = improve(points, triangles), improve(far, triangles)
+    assert (more.points == np.concatenate([plain.points, far[-1:]])).all()
+    assert more.after == plain.after

@@ -1,0 +1,163 @@
+"""The part of a report on noisy weaves: how many vertices a noise leaves, and how that scales."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from functools import partial
+
+import numpy as np
+import pandas as pd
+
+from harness.analysis.smoothed import (
+    HYPOTHESES,
+    Collapse,
+    Estimate,
+    collapse,
+    seed_of,
+)
+from harness.analysis.smoothed import curves as noise_curves
+from harness.analysis.weave_rows import SHAPES
+from harness.report import tables, weave_figures
+from harness.report.labels import bracket, number
+from harness.report.parts import Figure, Part
+from harness.report.sections import Cell, Download, Table, cell
+from harness.report.style import render
+
+
+def collapses(table: pd.DataFrame) -> Iterator[tuple[str, float, pd.DataFrame, Collapse]]:
+    """Family, shape, rows and scaling of every weave with enough noises at enough sizes.
+
+    ``table``: rows as of ``harness.analysis.weave_rows.compare``.
+    """
+    for (family, shape), part in table.groupby(["family", "shape"], sort=True):
+        found = collapse(noise_curves(part), seed_of("collapse", family, shape))
+        if found is not None:
+            yield str(family), float(str(shape)), part, found
+
+
+def smoothed(
+    noisy: Sequence[tuple[str, float, pd.DataFrame, Collapse]], download: Download
+) -> Part:
+    """The section on these weaves; ``download`` is the table of all of their counts."""
+    views, figures, downloads = [], [], [download]
+    for family, shape, rows, found in noisy:
+        name = f"smoothed-{family}-{shape:.3g}"
+        points = Download(f"{name}", f"data/{name}.csv", tables.to_csv(points_of(rows)))
+        table = tables.from_csv(points.text)
+        transition = {n: estimate.value for n, estimate in found.transition}
+        title = f"{family}, {SHAPES[family][0]} = {shape:.4g}"
+        drawn = [
+            Figure(
+                f"figures/{name}.svg",
+                render(
+                    partial(
+                        weave_figures.collapse,
+                        points=table,
+                        exponent=found.exponent.value,
+                        transition=transition,
+                    ),
+                    8.6,
+                    3.4,
+                ),
+                f"Vertices of {title} over the predicted number, against the noise, and collapsed",
+            ),
+            Figure(
+                f"figures/{name}-map.svg",
+                render(
+                    partial(
+                        weave_figures.heat_map,
+                        points=table,
+                        exponents=(found.exponent.value, 2.0),
+                        through=transition,
+                    ),
+                    4.8,
+                    3.6,
+                ),
+                f"Share of the predicted vertices of {title} over n and noise",
+            ),
+        ]
+        figures += drawn
+        downloads.append(points)
+        views.append(
+            {
+                "title": title,
+                "family": family,
+                "exponent": found.exponent,
+                "sentences": list(_sentences(found)),
+                "figures": drawn,
+                "download": points,
+                "tables": [_transition_table(found), _exponent_table(found)],
+            }
+        )
+    return Part(
+        "smoothed",
+        "Smoothed complexity",
+        "smoothed.html",
+        {"views": views, "download": download},
+        figures,
+        downloads,
+    )
+
+
+def points_of(rows: pd.DataFrame) -> pd.DataFrame:
+    """Median and quartiles of the share at every n and noise."""
+    records = []
+    for (n, noise), part in rows[rows["noise"] > 0].groupby(["n", "noise"], sort=True):
+        lower, median, upper = np.quantile(part["share"].to_numpy(), [0.25, 0.5, 0.75])
+        records.append(
+            {
+                "n": n,
+                "noise": noise,
+                "replicates": len(part),
+                "lower": lower,
+                "median": median,
+                "upper": upper,
+            }
+        )
+    return pd.DataFrame.from_records(records)
+
+
+def _shown(estimate: Estimate) -> str:
+    return f"{number(estimate.value)} {bracket(estimate.low, estimate.high)}"
+
+
+def _sentences(found: Collapse) -> Iterator[str]:
+    yield (
+        f"The curves of n = {', '.join(str(curve.n) for curve in found.curves)} collapse best as "
+        f"functions of ε·nᵃ with a = {_shown(found.exponent)}; what then remains between them is "
+        f"{number(100 * found.spread)} % of the predicted vertices (root mean square)."
+    )
+    low, high = found.drift
+    pairs = "; ".join(f"{n} and {other}: {_shown(e)}" for n, other, e in found.neighbours)
+    yield f"From neighbouring sizes alone, a is, for {pairs}."
+    outside = [f"{a:g}" for a in HYPOTHESES if not low <= a <= high]
+    inside = [f"{a:g}" for a in HYPOTHESES if low <= a <= high]
+    yield (
+        f"All these intervals lie between {number(low)} and {number(high)}. Of the whole exponents "
+        f"{', '.join(f'{a:g}' for a in HYPOTHESES)} that rules out {', '.join(outside) or 'none'}"
+        f" on these sizes and leaves {', '.join(inside) or 'none'}."
+    )
+    if found.transition_exponent is not None:
+        yield (
+            "The noise that leaves half of the vertices falls like n⁻ᵃ with a = "
+            f"{_shown(found.transition_exponent)}."
+        )
+
+
+def _transition_table(found: Collapse) -> Table:
+    body = [
+        [cell(float(n)), cell(e.value), Cell(bracket(e.low, e.high), f"{e.low:.9g}")]
+        for n, e in found.transition
+    ]
+    return Table("The noise that leaves half of the vertices", ["n", "σ(n)", "95 %"], body)
+
+
+def _exponent_table(found: Collapse) -> Table:
+    rows = [("best", found.exponent.value, found.spread)]
+    rows += [("hypothesis", a, s) for a, s in zip(HYPOTHESES, found.spreads, strict=True)]
+    body = [
+        [Cell(what), cell(a), cell(100 * s), cell(s / found.spread if found.spread else np.nan)]
+        for what, a, s in rows
+    ]
+    head = ["exponent", "a", "spread, % of the prediction", "÷ best"]
+    return Table("How well the curves collapse", head, body)
