@@ -83,11 +83,13 @@ def test_finer_polylines_stay_within_the_tolerance(diagram: PlanarMap) -> None:
 
 def test_left_and_right_of_an_edge(diagram: PlanarMap) -> None:
     size = size_of(diagram.instance)
+    tolerance = size / 1e5
     for edge in diagram.edges:
-        line = edge.polyline(size / 1000)
+        line = edge.polyline(tolerance)
         k = len(line) // 2
         direction = line[k] - line[k - 1]
-        if not (length := math.hypot(*direction)) > 1e-9 * size:
+        # So long that a step to the side leads across the edge, not only across its chord.
+        if not (length := math.hypot(*direction)) > 40 * tolerance:
             continue
         middle = (line[k] + line[k - 1]) / 2
         step = 0.05 * length * np.array([-direction[1], direction[0]]) / length

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from dataclasses import dataclass, field
-from fractions import Fraction
-from functools import cmp_to_key
 
 import numpy as np
 
@@ -144,79 +141,6 @@ def _add_local_maps(arrays: Arrays, solved: dict[int, LocalMap], a: int, v: int,
             glue.unite(arrays.parent, s + x, s + y)
         for x, y in local.mates:
             arrays.mate[s + x], arrays.mate[s + y] = s + y, s + x
-
-
-@dataclass(eq=False)
-class CornerNode:
-    """Edge ends at a special corner: ``ports``, counter-clockwise about it."""
-
-    corner: int
-    ports: list[int]
-
-
-def corner_nodes(roots: Roots, leaves: Leaves, arrays: Arrays) -> list[CornerNode]:
-    """All special corners at which edges end.
-
-    Raises Contradiction if an edge ends at a corner that is not special.
-    """
-    loose = np.flatnonzero((arrays.inward >= 0) & (arrays.mate < 0) & (arrays.place % 2 == 0))
-    leaf_of_arc = arrays.leaf_of_arc[arrays.inward[loose] >> 1]
-    shape_of_leaf = np.cumsum(leaves.kinds != EMPTY) - 1
-    at: defaultdict[int, list[tuple[int, int]]] = defaultdict(list)
-    for port, leaf in zip(loose.tolist(), leaf_of_arc.tolist(), strict=True):
-        row = int(shape_of_leaf[leaf])
-        mine = leaves.shapes[row].reshape(3, 3)[arrays.place[port] // 2]
-        if np.count_nonzero(mine) != 1:
-            raise Contradiction("an edge ends at a corner that is not special")
-        corner = int(roots.triangles[leaves.shape_roots[row], int(mine.argmax())])
-        if not roots.corners.special[corner]:
-            raise Contradiction("an edge passes through a free point")
-        at[corner].append((row, port))
-    return [
-        CornerNode(corner, _turning(roots, leaves, corner, rows))
-        for corner, rows in sorted(at.items())
-    ]
-
-
-def _turning(roots: Roots, leaves: Leaves, corner: int, ports: list[tuple[int, int]]) -> list[int]:
-    """The ports of some leaves (row, port) at a corner, counter-clockwise about it; exactly.
-
-    Those of one leaf come in the order of a walk inside, that is clockwise.
-    """
-    rows = sorted({row for row, _ in ports})
-    if len(rows) > 1:
-        headings = {row: _heading(roots, leaves, corner, row) for row in rows}
-
-        def compare(one: int, other: int) -> int:
-            (half, x, y), (other_half, z, w) = headings[one], headings[other]
-            if half != other_half:
-                return half - other_half
-            return -1 if x * w > y * z else 1
-
-        rows.sort(key=cmp_to_key(compare))
-    return [port for row in rows for here, port in reversed(ports) if here == row]
-
-
-def _heading(roots: Roots, leaves: Leaves, corner: int, row: int) -> tuple[int, Fraction, Fraction]:
-    """The direction from a corner to the middle of a leaf at it: which half of the turn, and a
-    vector.
-
-    About a corner at infinity directions are seen from the plane's side of it: across it, and
-    towards the plane.
-    """
-    exact, weights = roots.corners.exact, roots.corners.weights
-    middle = [sum(column, Fraction(0)) for column in zip(*leaves.weights(row), strict=True)]
-    x = y = w = Fraction(0)
-    for weight, other in zip(
-        middle, roots.triangles[leaves.shape_roots[row]].tolist(), strict=True
-    ):
-        x, y = x + weight * exact[other][0], y + weight * exact[other][1]
-        w += weight * Fraction(weights[other])
-    px, py = exact[corner]
-    if not weights[corner]:
-        return 0, px * y - py * x, w
-    x, y = x - w * px, y - w * py
-    return (0 if y > 0 or (y == 0 and x > 0) else 1), x, y
 
 
 def joined(arrays: Arrays, node_of_port: Ints) -> tuple[Ints, Ints]:

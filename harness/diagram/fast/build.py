@@ -11,6 +11,8 @@ from typing import Any
 import numpy as np
 
 from harness.diagram.counts import Domain, Objective
+from harness.diagram.fast.arranged import ArrangedCorners
+from harness.diagram.fast.boxes import sift_triangles
 from harness.diagram.fast.hard import LocalMap, solve
 from harness.diagram.fast.leaves import EMPTY, HARD
 from harness.diagram.fast.prepare import Floats, Ints, Prepared
@@ -163,27 +165,20 @@ def find_leaves(
 def _jobs(coordinates: Floats, weights: Floats, triangles: Ints, count: Ints) -> Iterator[Job]:
     """Jobs in the order of the roots, which do not depend on the number of workers.
 
-    A root with many candidates is cut into 2^``CUTS`` parts, others are taken together until they
-    have about 1/64 of all candidates.
+    A root with many candidates of its own is cut into 2^``CUTS`` parts, others are taken together
+    until they have about 1/64 of all candidates.
     """
-    enough = max(int(count.sum()) // 64, 64)
-    waiting: list[int] = []
-    used = 0
-    for root, candidates in enumerate(count.tolist()):
-        corners = triangles[root]
-        if candidates >= MANY and bool(weights[corners].all()):
-            if waiting:
-                yield Job(np.array(waiting), np.zeros(0, dtype=np.int64))
-                waiting, used = [], 0
-            yield from _parts(root, coordinates[corners][:, [0, 2]])
-            continue
-        waiting.append(root)
-        used += candidates
-        if used >= enough:
-            yield Job(np.array(waiting), np.zeros(0, dtype=np.int64))
-            waiting, used = [], 0
-    if waiting:
-        yield Job(np.array(waiting), np.zeros(0, dtype=np.int64))
+    total = int(count.sum())
+    cut = (count >= max(MANY, total // 256)) & weights[triangles].all(axis=1)
+    batch = (np.cumsum(count) - count) // max(total // 64, 64)
+    begins = np.ones(len(count), dtype=bool)
+    begins[1:] = (batch[1:] != batch[:-1]) | cut[1:] | cut[:-1]
+    starts = np.flatnonzero(begins)
+    for start, stop in zip(starts, np.append(starts[1:], len(count)), strict=True):
+        if cut[start]:
+            yield from _parts(int(start), coordinates[triangles[start]][:, [0, 2]])
+        else:
+            yield Job(np.arange(start, stop), np.zeros(0, dtype=np.int64))
 
 
 def _parts(root: int, points: Floats) -> Iterator[Job]:
@@ -212,6 +207,7 @@ def candidates_of(
     sense: float,
     definite: bool,
     world: World,
+    workers: int,
 ) -> tuple[Ints, Ints, Ints]:
     """Candidates of every root: first, count, and all of them."""
     n, m = prepared.instance.n, len(found.sides) if found else 0
@@ -225,6 +221,19 @@ def candidates_of(
         )
         return sifted
     coordinates, weights, _, _ = roots.corners.arrays(prepared.centre, prepared.scale)
+    if isinstance(roots.corners, ArrangedCorners):
+        return sift_triangles(
+            roots.triangles,
+            coordinates,
+            weights,
+            n,
+            prepared.segments,
+            prepared.size,
+            sense,
+            definite,
+            world,
+            workers,
+        )
     first, flat = sift_regions(
         roots.regions,
         coordinates,

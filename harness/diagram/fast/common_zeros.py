@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import combinations_with_replacement
 
 import numpy as np
 
 from harness.diagram.fast.forms import gradient_controls, value_and_gradient
 from harness.diagram.fast.leaves import hull_determinant
+from harness.diagram.fast.pairs import polar
 from harness.diagram.fast.prepare import Floats
 
 #: Starts of Newton's method if the leaf's own fails.
@@ -24,6 +26,12 @@ def independence(cubics: Floats) -> float:
     return abs(float(hull_determinant(controls[0], controls[1], 0.0, 0.0))) / float(largest.prod())
 
 
+#: Halvings after which the search for a zero ends.
+_HALVINGS = 24
+#: The corners, with repetition, of the ten coefficients of a cubic.
+_INDICES = tuple(combinations_with_replacement(range(3), 3))
+
+
 def common_zero(f: Floats, g: Floats, guess: Sequence[float]) -> tuple[float, float, float] | None:
     """The weights of a common zero in the triangle, by Newton's method from a guess (x, y) and,
     if that fails, from points all over the triangle; None if none leads to one."""
@@ -31,7 +39,31 @@ def common_zero(f: Floats, g: Floats, guess: Sequence[float]) -> tuple[float, fl
         found = _newton(f, g, start)
         if found is not None:
             return found
+    return _by_halving(f, g)
+
+
+def _by_halving(f: Floats, g: Floats) -> tuple[float, float, float] | None:
+    """The same from points near which neither cubic keeps its sign, ever closer to the zero."""
+    level = [np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])]
+    for _ in range(_HALVINGS):
+        halves = []
+        for a, b, c in level:
+            longest = np.argmax([np.hypot(*(c - b)), np.hypot(*(a - c)), np.hypot(*(b - a))])
+            p, q, r = ((a, b, c), (b, c, a), (c, a, b))[longest]
+            middle = (q + r) / 2
+            halves += [np.array([p, q, middle]), np.array([p, middle, r])]
+        level = [half for half in halves if _may_vanish(f, half) and _may_vanish(g, half)]
+        for half in level:
+            found = _newton(f, g, half.mean(axis=0).tolist())
+            if found is not None:
+                return found
     return None
+
+
+def _may_vanish(cubic: Floats, corners: Floats) -> bool:
+    """Whether the coefficients of a cubic over a part of the triangle have both signs."""
+    values = [polar(cubic, *(corners[k] for k in index)) for index in _INDICES]
+    return bool(min(values) <= 0.0 <= max(values))
 
 
 def _newton(f: Floats, g: Floats, start: Sequence[float]) -> tuple[float, float, float] | None:

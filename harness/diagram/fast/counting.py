@@ -74,8 +74,7 @@ class FastDiagram:
     @cached_property
     def corner_points(self) -> Floats:
         """The corners of roots as doubles, (c, 2)."""
-        exact = self.roots.corners.exact
-        return np.array([[float(x), float(y)] for x, y in exact]).reshape(-1, 2)
+        return self.roots.corners.points()
 
     @cached_property
     def domain_corners(self) -> set[int]:

@@ -92,11 +92,15 @@ def _flat_points(instance: Instance, kernel: Kernel) -> dict[int, list[RationalP
 
     There are some only if several edges lie on one line: candidates are found in doubles.
     """
-    vertices = instance.floats
+    vertices, ends = instance.floats, kernel.floats
     size = float(np.ptp(vertices, axis=0).max())
+    if np.spacing(np.abs(vertices).max()) > 1e-14 * size:  # rounded coordinates are too coarse
+        x0, y0 = kernel.corners[0]
+        exact = [instance.exact_vertex(k) for k in range(instance.n)]
+        vertices = np.array([[float(x - x0), float(y - y0)] for x, y in exact])
+        ends = np.array([[float(x - x0), float(y - y0)] for x, y in kernel.corners])
     found: dict[int, list[RationalPoint]] = {}
     m = len(kernel.sides)
-    ends = kernel.floats
     for k in range(m):
         a, d = ends[k], ends[(k + 1) % m] - ends[k]
         length = float(np.hypot(*d))

@@ -103,11 +103,28 @@ class LeafArc:
                 for p, one, two in zip(points, line, line[1:], strict=False)
                 if one * two < 0
             ]
+            values += [self._at_line(end) for end in range(2) if self._ends_on_line(end)]
         for k in range(len(samples) - 1):
             if slopes[k] * slopes[k + 1] < 0:
                 turn = brentq(self._slope, samples[k], samples[k + 1], xtol=1e-12)
                 values.append(self._jet(self.at(turn))[0])
         return values
+
+    def _ends_on_line(self, end: int) -> bool:
+        """Whether an end lies on a side or in a corner of the leaf that is on a segment's line, and
+        is not the segment's endpoint."""
+        arrays = self.chart.diagram.arrays
+        name = int(arrays.arcs[self.arc, end])
+        if name < 0:
+            return False
+        place = int(arrays.place[name])
+        corners = {place // 2, (place // 2 + place % 2) % 3}
+        form = self._forms[0]
+        return all(form[k] == 0 for k in corners) and (place % 2 == 1 or form[3 + place // 2] != 0)
+
+    def _at_line(self, end: int) -> float:
+        """cot θ at an end that lies on the line of both segments."""
+        return math.copysign(math.inf, _polar(self._forms[0], self.ends[end], self.ends[end]))
 
     def _slope(self, r: float) -> float:
         weights = self.at(r)
@@ -135,7 +152,8 @@ class LeafArc:
         if self.is_far(end) or (name < 0 and self.chart.is_crossing):
             return math.inf
         if place % 2:
-            return self._jet(self.ends[end])[0]
+            on_line = self.which == 0 and self._ends_on_line(end)
+            return self._at_line(end) if on_line else self._jet(self.ends[end])[0]
         corner = place // 2
         for form in self._forms:
             line, q = form[corner], form[3 + corner]

@@ -168,8 +168,7 @@ class FastLocator:
     def _corners(self) -> np.ndarray:
         """The corners (x, y, w) of the roots as doubles, (r, 3, 3)."""
         corners = self.diagram.roots.corners
-        exact = np.array([[float(x), float(y)] for x, y in corners.exact]).reshape(-1, 2)
-        both = np.column_stack([exact, corners.weights])
+        both = np.column_stack([corners.points(), corners.weights])
         rows: np.ndarray = both[self.diagram.roots.triangles]
         return rows
 

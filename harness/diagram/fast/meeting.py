@@ -14,7 +14,7 @@ from collections import defaultdict
 from functools import cached_property
 from itertools import pairwise
 
-from harness.diagram.fast.arrays import CornerNode
+from harness.diagram.fast.corner_nodes import CornerNode
 from harness.diagram.fast.counting import FastDiagram
 from harness.diagram.fast.node_points import common_point, local_node
 from harness.diagram.fast.nodes import CROSS, owners_around

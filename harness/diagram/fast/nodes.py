@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from harness.diagram.counts import NodeKind
-from harness.diagram.fast.arrays import Arrays, CornerNode, corner_nodes
+from harness.diagram.fast.arrays import Arrays
 from harness.diagram.fast.build import Leaves
+from harness.diagram.fast.corner_nodes import CornerNode, CornerNodes, corner_nodes
 from harness.diagram.fast.glue import find
 from harness.diagram.fast.leaves import CROSSING, EMPTY, SADDLE
 from harness.diagram.fast.prepare import Floats, Ints, Prepared
@@ -31,10 +32,10 @@ class Nodes:
 
     kind: Ints
     degree: Ints
-    corners: list[CornerNode]
+    corners: CornerNodes
     ports: Ints
     of_port: Ints
-    far: list[CornerNode]
+    far: CornerNodes
 
 
 def find_nodes(
@@ -49,32 +50,22 @@ def find_nodes(
     for v, node in arrays.special.items():
         kind[v] = KINDS.index(node.kind)
     degree = np.diff(arrays.out_first)
-    everywhere = []
-    for met in corner_nodes(roots, leaves, arrays):
-        if len(met.ports) == 2 and _is_hub(roots, met.corner):
-            one, two = met.ports  # an edge that passes through, without a node
-            arrays.mate[one], arrays.mate[two] = two, one
-        else:
-            everywhere.append(met)
-    corners = [met for met in everywhere if roots.corners.weights[met.corner]]
-    far = [met for met in everywhere if not roots.corners.weights[met.corner]]
+    met = corner_nodes(roots, leaves, arrays)
+    finite = np.array(roots.corners.weights)[met.corners] != 0
+    passing = finite & (met.degrees == 2) & _are_hubs(roots, met.corners)
+    for through in met.only(passing):
+        one, two = through.ports  # an edge that passes through, without a node
+        arrays.mate[one], arrays.mate[two] = two, one
+    corners, far = met.only(finite & ~passing), met.only(~finite)
     of_port = np.full(len(arrays.place), -1, dtype=np.int64)
-    corner_kinds = []
-    for k, corner in enumerate(corners):
-        of_port[corner.ports] = n_vertices + k
-        corner_kinds.append(
-            BOUNDARY
-            if corner.corner in roots.on_walls
-            else corner_kind(prepared.instance, roots, arrays, corner)
-        )
+    of_port[corners.ports] = n_vertices + np.repeat(np.arange(len(corners)), corners.degrees)
     loose = np.flatnonzero((arrays.inward >= 0) & (arrays.mate < 0) & (of_port < 0))
     of_port[loose] = n_vertices + len(corners) + np.arange(len(loose))
     single = np.full(len(loose), AT_INFINITY if in_plane else BOUNDARY)
+    corner_kinds = _corner_kinds(prepared, roots, arrays, corners)
     return Nodes(
-        kind=np.concatenate([kind, np.array(corner_kinds, dtype=np.int64), single]),
-        degree=np.concatenate(
-            [degree, [len(corner.ports) for corner in corners], np.ones(len(loose), dtype=np.int64)]
-        ).astype(np.int64),
+        kind=np.concatenate([kind, corner_kinds, single]),
+        degree=np.concatenate([degree, corners.degrees, np.ones(len(loose), dtype=np.int64)]),
         corners=corners,
         ports=loose,
         of_port=of_port,
@@ -82,10 +73,52 @@ def find_nodes(
     )
 
 
-def _is_hub(roots: Roots, corner: int) -> bool:
-    """Whether a special corner is neither on the boundary, nor at infinity, nor an endpoint."""
-    ends = any(z & 1 for z in roots.corners.incident[corner])
-    return bool(roots.corners.weights[corner]) and corner not in roots.on_walls and not ends
+def _are_hubs(roots: Roots, corners: Ints) -> np.ndarray:
+    """Whether special corners are neither on the boundary, nor endpoints."""
+    on_walls = np.zeros(len(roots.corners.weights), dtype=bool)
+    on_walls[list(roots.on_walls)] = True
+    hubs: np.ndarray = ~on_walls[corners] & ~roots.corners.have_ends()[corners]
+    return hubs
+
+
+def _corner_kinds(prepared: Prepared, roots: Roots, arrays: Arrays, corners: CornerNodes) -> Ints:
+    """The kinds of nodes at finite corners."""
+    kinds = np.where(_are_plain_crossings(prepared, roots, arrays, corners), CROSS, -1)
+    for k in np.flatnonzero(kinds < 0).tolist():
+        node = corners[k]
+        kinds[k] = (
+            BOUNDARY
+            if node.corner in roots.on_walls
+            else corner_kind(prepared.instance, roots, arrays, node)
+        )
+    return kinds
+
+
+def _are_plain_crossings(
+    prepared: Prepared, roots: Roots, arrays: Arrays, corners: CornerNodes
+) -> np.ndarray:
+    """Whether nodes at corners are certainly crossings of two lines outside their segments.
+
+    Four edges between the cells of two segments, both with an acute view of them (Q > 0), and no
+    others whose lines pass: so both lines pass.
+    """
+    frame, _, first, flat = roots.corners.arrays(prepared.centre, prepared.scale)
+    number, count = corners.corners, np.diff(first)[corners.corners]
+    plain: np.ndarray = (corners.degrees == 4) & (count == 2)
+    rows = np.flatnonzero(plain)
+    lines = flat[first[number[rows]][:, None] + np.arange(2)]
+    ports = corners.ports[corners.first[rows][:, None] + np.arange(4)]
+    owners = arrays.owner[arrays.arcs[arrays.inward[ports] >> 1, 2:]].reshape(-1, 8)
+    low, high = owners.min(axis=1), owners.max(axis=1)
+    here = ((owners == low[:, None]) | (owners == high[:, None])).all(axis=1)
+    here &= (lines[:, 0] == 2 * low) & (lines[:, 1] == 2 * high)
+    p = frame[number[rows]][:, None, 0::2]
+    ends = prepared.segments[lines >> 1][:, :, 0::2]
+    to_a, to_b = ends[:, :, 0:2] - p, ends[:, :, 2:4] - p
+    size = np.abs(to_a).sum(axis=2) * np.abs(to_b).sum(axis=2)
+    here &= ((to_a * to_b).sum(axis=2) > 1e-9 * size).all(axis=1)
+    plain[rows] = here
+    return plain
 
 
 def owners_around(arrays: Arrays, corner: CornerNode) -> list[int]:
@@ -130,7 +163,7 @@ def root_points(roots: Roots, root: Ints, weights: Floats) -> Floats:
 
     Where the point is at infinity, its direction.
     """
-    exact = np.array([[float(x), float(y)] for x, y in roots.corners.exact]).reshape(-1, 2)
+    exact = roots.corners.points()
     corner_weights = np.array(roots.corners.weights)
     corners = roots.triangles[root]
     summed = np.einsum("vc,vcd->vd", weights, exact[corners])

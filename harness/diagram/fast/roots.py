@@ -22,6 +22,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +40,44 @@ def double_double(value: Fraction) -> tuple[float, float]:
     """The two doubles whose sum is nearest to a rational, up to 2⁻¹⁰⁶ of it."""
     high = float(value)
     return high, float(value - Fraction(high))
+
+
+class CornerTable(Protocol):
+    """What both kinds of corners have; see :class:`Corners` for the meaning."""
+
+    @property
+    def exact(self) -> Sequence[RationalPoint]:
+        """Coordinates; directions of corners at infinity."""
+
+    @property
+    def weights(self) -> Any:
+        """1, or 0 at infinity, (c,)."""
+
+    @property
+    def incident(self) -> Sequence[list[int]]:
+        """The forms that vanish at each corner."""
+
+    @property
+    def special(self) -> Any:
+        """Whether something is known to happen at each, (c,)."""
+
+    def add(
+        self,
+        point: RationalPoint,
+        incident: Sequence[int] = (),
+        weight: float = 1.0,
+        special: bool = False,
+    ) -> int:
+        """Add a corner; its number."""
+
+    def arrays(self, centre: RationalPoint, scale: Fraction) -> tuple[Floats, Floats, Ints, Ints]:
+        """Coordinates, weights, incident segments (CSR)."""
+
+    def have_ends(self) -> NDArray[np.bool_]:
+        """Whether each is an endpoint."""
+
+    def points(self) -> Floats:
+        """Coordinates as doubles."""
 
 
 @dataclass
@@ -76,6 +115,14 @@ class Corners:
         flat = [z for row in self.incident for z in row]
         return coordinates, np.array(self.weights), first, np.array(flat, dtype=np.int64)
 
+    def have_ends(self) -> NDArray[np.bool_]:
+        """Whether each corner is the endpoint of a segment, (c,)."""
+        return np.array([any(z & 1 for z in row) for row in self.incident], dtype=bool)
+
+    def points(self) -> Floats:
+        """Coordinates (c, 2) as doubles; directions of corners at infinity."""
+        return np.array([[float(x), float(y)] for x, y in self.exact]).reshape(-1, 2)
+
 
 @dataclass(frozen=True, eq=False)
 class Roots:
@@ -86,7 +133,7 @@ class Roots:
     candidates are sifted first; ``region_of`` (r,): that of each root, or −1.
     """
 
-    corners: Corners
+    corners: CornerTable
     triangles: Ints
     walls: dict[tuple[int, int], int]
     regions: Ints
@@ -106,19 +153,19 @@ class Roots:
         r = len(self.triangles)
         start = self.triangles[:, [1, 2, 0]].ravel().astype(np.int64)
         end = self.triangles[:, [2, 0, 1]].ravel().astype(np.int64)
-        size = len(self.corners.exact)
-        keys, back = start * size + end, end * size + start
+        keys = np.minimum(start, end) * len(self.corners.weights) + np.maximum(start, end)
         order = np.argsort(keys)
-        if (np.diff(keys[order]) == 0).any():
+        same = np.diff(keys[order]) == 0
+        one, other = order[:-1][same], order[1:][same]
+        if (same[1:] & same[:-1]).any() or (start[one] == start[other]).any():
             raise Contradiction("two root triangles overlap")
-        place = np.searchsorted(keys, back, sorter=order)
-        found = order[np.minimum(place, 3 * r - 1)]
-        matched = keys[found] == back
-        result = np.where(matched, found, WALL)
+        result = np.full(3 * r, WALL, dtype=np.int64)
+        result[one], result[other] = other, one
         weights = np.array(self.corners.weights)
-        far = (weights[start] == 0) & (weights[end] == 0)
+        alone = result == WALL
+        far = alone & (weights[start] == 0) & (weights[end] == 0)
         result[far] = INFINITY
-        for k in np.flatnonzero(~matched & ~far):
+        for k in np.flatnonzero(alone & ~far):
             if (int(start[k]), int(end[k])) not in self.walls:
                 raise Contradiction("a side of a root triangle has no neighbour")
         return result.reshape(r, 3)

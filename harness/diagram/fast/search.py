@@ -5,6 +5,7 @@ from __future__ import annotations
 from harness.diagram.counts import Domain, Objective
 from harness.diagram.fast import domains
 from harness.diagram.fast.build import Leaves, candidates_of, find_leaves
+from harness.diagram.fast.faces import arranged_interior, arranged_roots
 from harness.diagram.fast.hubs import Hubs, find_hubs
 from harness.diagram.fast.plane import plane_roots
 from harness.diagram.fast.prepare import Prepared
@@ -13,6 +14,8 @@ from harness.diagram.fast.ties import Ties, tie_arrays, ties_at_corners, ties_at
 from harness.diagram.work import Contradiction, Hopeless
 from harness.geometry.kernel import Kernel
 
+#: The interiors of larger polygons are not cut by all lines.
+MOST_ARRANGED = 8192
 #: Rounds of new hubs, at most.
 ROUNDS = 12
 
@@ -34,7 +37,7 @@ def search(
     hubs = Hubs()
     sense = 1.0 if objective == "smallest" else -1.0
     for _ in range(ROUNDS):
-        roots, spans = _roots(prepared, domain, found, seed, hubs)
+        roots, spans = _roots(prepared, domain, found, sense, seed, hubs)
         leaves, ties = _settled(prepared, roots, spans, domain, sense, found, hubs, workers)
         if not find_hubs(prepared.instance, roots, leaves, sense, hubs):
             return roots, leaves, ties
@@ -42,14 +45,18 @@ def search(
 
 
 def _roots(
-    prepared: Prepared, domain: Domain, found: Kernel | None, seed: int, hubs: Hubs
+    prepared: Prepared, domain: Domain, found: Kernel | None, sense: float, seed: int, hubs: Hubs
 ) -> tuple[Roots, list[tuple[int, int]]]:
     points = list(hubs.points)
     if domain == "plane":
+        if sense > 0:
+            return arranged_roots(prepared, seed, points, list(hubs.directions)), []
         return plane_roots(prepared.instance, seed, points, list(hubs.directions)), []
     assert found is not None
     if domain == "kernel":
         return domains.kernel_roots(prepared.instance, found, seed, points)
+    if sense > 0 and prepared.instance.n <= MOST_ARRANGED:
+        return arranged_interior(prepared, seed, points), []
     return domains.interior_roots(prepared.instance, found, seed, points), []
 
 
@@ -67,9 +74,9 @@ def _settled(
     ties: Ties = ties_at_hubs(prepared.instance, roots, hubs.points, hubs.directions)
     definite = domain == "kernel"
     while True:
-        first, rows = tie_arrays(ties, len(roots.corners.exact))
+        first, rows = tie_arrays(ties, len(roots.corners.weights))
         world = (prepared.lines, prepared.lengths, prepared.classes, first, rows)
-        candidates = candidates_of(prepared, roots, found, spans, sense, definite, world)
+        candidates = candidates_of(prepared, roots, found, spans, sense, definite, world, workers)
         leaves = find_leaves(prepared, roots, candidates, definite, sense, workers, world)
         if leaves.statistics[5]:
             raise Hopeless("halving does not end")

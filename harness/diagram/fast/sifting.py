@@ -6,6 +6,7 @@ import numpy as np
 
 from harness.diagram.fast.forms import error_factor
 from harness.diagram.fast.jit import compiled
+from harness.diagram.fast.memory import borrowed, release
 from harness.diagram.fast.prune import prune
 from harness.diagram.fast.subdivide import grown
 from harness.diagram.fast.tables import root_table
@@ -24,13 +25,42 @@ def new_work(n):
             np.zeros(n, np.int64),
         ),
         np.full(3, -1),
+        np.empty(n, np.int64),
+        np.empty(n, np.int64),
+    )
+
+
+@compiled
+def borrowed_work(w):
+    """What ``new_work`` made, borrowed."""
+    tables, norms, work, spots, one, two = w
+    return (
+        borrowed(tables),
+        borrowed(norms),
+        (borrowed(work[0]), borrowed(work[1]), borrowed(work[2]), borrowed(work[3])),
+        borrowed(spots),
+        borrowed(one),
+        borrowed(two),
+    )
+
+
+@compiled
+def borrowed_world(world):
+    """See :data:`harness.diagram.fast.build.World`; borrowed."""
+    lines, lengths, classes, tie_first, ties = world
+    return (
+        borrowed(lines),
+        borrowed(lengths),
+        borrowed(classes),
+        borrowed(tie_first),
+        borrowed(ties),
     )
 
 
 @compiled
 def sift(ids, m, corners, weights, far, segments, size, sense, definite, world, w):
     """Keep in ``ids`` (m,) the candidates that no pivot beats all over a triangle; their number."""
-    tables, norms, work, spots = w
+    tables, norms, work, spots, _, _ = w
     for a in range(m):
         root_table(segments[ids[a]], corners, weights, 0, 0, size, sense, tables[a], norms[a, 0:2])
     kept, _ = prune(tables, norms, ids, 0, m, error_factor(0), far, definite, work, world, spots)
@@ -42,13 +72,14 @@ def sift_regions(regions, corners, weights, n, segments, size, sense, definite, 
     """Candidates of each region (triangles of corners), in CSR form; the last is the whole."""
     first = np.zeros(len(regions) + 2, np.int64)
     flat = np.empty(1024, np.int64)
-    ids = np.empty(n, np.int64)
-    w = new_work(n)
-    three, ones = np.empty((3, 4)), np.empty(3)
+    kept = (np.empty(n, np.int64), np.empty((3, 4)), np.empty(3))
+    ids, three, ones = borrowed(kept[0]), borrowed(kept[1]), borrowed(kept[2])
+    kept_work = new_work(n)
+    w, world, segments = borrowed_work(kept_work), borrowed_world(world), borrowed(segments)
     for r in range(len(regions) + 1):
         for a in range(n):
             ids[a] = a
-        kept = n
+        left = n
         if r < len(regions):
             far = 0
             for k in range(3):
@@ -56,10 +87,11 @@ def sift_regions(regions, corners, weights, n, segments, size, sense, definite, 
                 ones[k] = weights[regions[r, k]]
                 if ones[k] == 0.0:
                     far |= 1 << k
-            kept = sift(ids, n, three, ones, far, segments, size, sense, definite, world, w)
-        flat = grown(flat, first[r] + kept)
-        flat[first[r] : first[r] + kept] = ids[:kept]
-        first[r + 1] = first[r] + kept
+            left = sift(ids, n, three, ones, far, segments, size, sense, definite, world, w)
+        flat = grown(flat, first[r] + left)
+        flat[first[r] : first[r] + left] = ids[:left]
+        first[r + 1] = first[r] + left
+    release(kept, kept_work)
     return first, flat[: first[-1]].copy()
 
 
@@ -106,10 +138,11 @@ def sift_kernel(chain, m, n, segments, size, sense, world):
     owner_count = np.zeros(triangles, np.int64)
     flat = np.empty(4 * n + 1024, np.int64)
     used = 0
-    w = new_work(n)
-    ids = np.empty(n, np.int64)
-    ones = np.ones(3)
-    box, three = np.empty((4, 4)), np.empty((3, 4))
+    kept_work = new_work(n)
+    w, world, segments = borrowed_work(kept_work), borrowed_world(world), borrowed(segments)
+    kept_small = (np.ones(3), np.ones(4), np.empty((4, 4)), np.empty((3, 4)), np.empty(n, np.int64))
+    ones, weights, box = borrowed(kept_small[0]), borrowed(kept_small[1]), borrowed(kept_small[2])
+    three, ids = borrowed(kept_small[3]), borrowed(kept_small[4])
     # low, high, first and count of the candidates of the piece around it.
     stack = np.empty((4 * m + 16, 4), np.int64)
     for a in range(n):
@@ -120,7 +153,7 @@ def sift_kernel(chain, m, n, segments, size, sense, world):
     kept = n
     for a in range(n):
         ids[a] = a
-    kept = _sift_box(ids, kept, box, three, ones, segments, size, sense, world, w)
+    kept = sift_box(ids, kept, box, weights, three, ones, segments, size, sense, True, world, w)
     flat = grown(flat, used + kept)
     flat[used : used + kept] = ids[:kept]
     first, count = used, kept
@@ -137,7 +170,9 @@ def sift_kernel(chain, m, n, segments, size, sense, world):
         low, high, first, count = stack[top]
         _box(chain, 2 * low, 2 * high, size, box)
         ids[:count] = flat[first : first + count]
-        kept = _sift_box(ids, count, box, three, ones, segments, size, sense, world, w)
+        kept = sift_box(
+            ids, count, box, weights, three, ones, segments, size, sense, True, world, w
+        )
         flat = grown(flat, used + kept)
         flat[used : used + kept] = ids[:kept]
         first, count = used, kept
@@ -152,23 +187,47 @@ def sift_kernel(chain, m, n, segments, size, sense, world):
         stack[top + 1, 0], stack[top + 1, 1] = middle, high
         stack[top + 1, 2], stack[top + 1, 3] = first, count
         top += 2
+    release(kept_work, kept_small)
     return owner_first, owner_count, flat[:used].copy()
 
 
 @compiled
-def _sift_box(ids, m, box, three, ones, segments, size, sense, world, w):
-    """Keep the candidates that may win in a rectangle: in one of its two triangles."""
+def sift_box(ids, m, box, weights, three, ones, segments, size, sense, definite, world, w):
+    """Keep the candidates that may win in one of the halves of a quadrilateral (4, 4), (4,)."""
     if m <= 1:
         return m
-    both = np.empty(m, np.int64)
-    both[:] = ids[:m]
-    three[0], three[1], three[2] = box[0], box[1], box[2]
-    one = sift(ids, m, three, ones, 0, segments, size, sense, True, world, w)
-    three[0], three[1], three[2] = box[0], box[2], box[3]
-    two = sift(both, m, three, ones, 0, segments, size, sense, True, world, w)
-    merged = np.empty(one + two, np.int64)
-    merged[:one] = ids[:one]
-    merged[one:] = both[:two]
-    merged = np.unique(merged)
-    ids[: len(merged)] = merged
-    return len(merged)
+    before, both = w[4], w[5]
+    before[:m] = ids[:m]
+    both[:m] = ids[:m]
+    far = _half(box, weights, 1, three, ones)
+    one = sift(ids, m, three, ones, far, segments, size, sense, definite, world, w)
+    far = _half(box, weights, 2, three, ones)
+    two = sift(both, m, three, ones, far, segments, size, sense, definite, world, w)
+    if one == m or two == m:
+        ids[:m] = before[:m]
+        return m
+    # Both kept the order; those that one of them kept.
+    i = j = kept = 0
+    for k in range(m):
+        candidate, wanted = before[k], False
+        if i < one and ids[i] == candidate:
+            i, wanted = i + 1, True
+        if j < two and both[j] == candidate:
+            j, wanted = j + 1, True
+        if wanted:
+            before[kept] = candidate
+            kept += 1
+    ids[:kept] = before[:kept]
+    return kept
+
+
+@compiled
+def _half(box, weights, k, three, ones):
+    """Corners 0, k, k + 1 of a quadrilateral as a triangle; which of them are at infinity."""
+    three[0], three[1], three[2] = box[0], box[k], box[k + 1]
+    ones[0], ones[1], ones[2] = weights[0], weights[k], weights[k + 1]
+    far = 0
+    for corner in range(3):
+        if ones[corner] == 0.0:
+            far |= 1 << corner
+    return far

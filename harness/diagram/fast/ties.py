@@ -41,13 +41,33 @@ def ties_at_hubs(
     directions: Mapping[RationalPoint, list[int]],
 ) -> Ties:
     """Ties at hubs, between the segments of the leaves in which they were found."""
+    corners = roots.corners
+    weights = np.array(corners.weights)
     found: Ties = set()
-    for corner, (point, weight) in enumerate(
-        zip(roots.corners.exact, roots.corners.weights, strict=True)
-    ):
-        ids = points.get(point, ()) if weight else directions.get(point, ())
-        found |= set(_ties(instance, roots, corner, ids))
+    if not points and not directions:
+        return found
+    rounded = corners.points()
+    for known, finite in ((points, True), (directions, False)):
+        for point, ids in known.items():
+            x, y = (float(c) for c in point)
+            if finite:
+                gap = np.abs(rounded - (x, y)).max(axis=1)
+                near = (gap <= 1e-9 * (1 + np.abs(rounded).max(axis=1))) & (weights != 0)
+            else:
+                along, across = rounded @ (x, y), rounded @ (-y, x)
+                near = (weights == 0) & (along > 0) & (np.abs(across) <= 1e-9 * along)
+            for corner in np.flatnonzero(near).tolist():
+                if _is_at(corners.exact[corner], point, finite):
+                    found |= set(_ties(instance, roots, corner, ids))
     return found
+
+
+def _is_at(corner: RationalPoint, point: RationalPoint, finite: bool) -> bool:
+    """Whether a corner is a point, or at infinity in a direction."""
+    if finite:
+        return corner == point
+    (x, y), (u, v) = corner, point
+    return x * v == y * u and x * u + y * v > 0
 
 
 def _ties(

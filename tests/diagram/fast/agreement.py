@@ -221,6 +221,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     if options.files:
         return _again(options.files, options.builder)
+    options.out.mkdir(parents=True, exist_ok=True)
     totals: Counter[str] = Counter()
     for source in options.family or SOURCES:
         start = time.perf_counter()

@@ -1,0 +1,230 @@
+"""Root triangles from the arrangement of lines: what they are said to be, exactly."""
+
+import random
+from fractions import Fraction
+from itertools import combinations, count, islice, pairwise
+
+import numpy as np
+import pytest
+
+from generators.registry import generate
+from harness.diagram.fast.arranged import ArrangedCorners
+from harness.diagram.fast.arrangement import arrange
+from harness.diagram.fast.boxes import sift_triangles
+from harness.diagram.fast.faces import arranged_interior, arranged_roots
+from harness.diagram.fast.line_points import points_on, within_hull
+from harness.diagram.fast.lines import lines_of
+from harness.diagram.fast.prepare import prepare
+from harness.diagram.fast.ties import tie_arrays
+from harness.geometry.instance import Instance
+from harness.geometry.predicates import compare_visual_angles, orientation
+from tests.diagram.fast.sources import SOURCES, instance
+
+POLYGONS = ("star", "zigzag", "convex-valtr", "lattice-star", "lattice-simple", "symmetric", "far")
+
+
+def made(source, index=0):
+    return instance(source, 11, index)
+
+
+def placed(lines, points):
+    """The exact points of an arrangement, in its integer coordinates."""
+    for i, j in points.pairs.tolist():
+        if i < 0:
+            yield points.others[j]
+        else:
+            x, y, w = lines.crossing(i, j)
+            yield Fraction(x, w), Fraction(y, w)
+
+
+def homogeneous(roots, corner):
+    x, y = roots.corners.exact[corner]
+    return x, y, Fraction(roots.corners.weights[corner])
+
+
+def determinant(a, b, c):
+    return (
+        a[0] * (b[1] * c[2] - b[2] * c[1])
+        - a[1] * (b[0] * c[2] - b[2] * c[0])
+        + a[2] * (b[0] * c[1] - b[1] * c[0])
+    )
+
+
+def areas(roots):
+    return [
+        determinant(*(homogeneous(roots, corner) for corner in row))
+        for row in roots.triangles.tolist()
+    ]
+
+
+@pytest.mark.parametrize("source", SOURCES)
+@pytest.mark.parametrize("index", [0, 1])
+def test_points_are_in_order_and_all_there(source, index):
+    prepared = prepare(made(source, index), parallels=True)
+    lines = lines_of(prepared)
+    points = points_on(lines)
+    exact = list(placed(lines, points))
+    rows = [
+        points.vertex[a:b].tolist() for a, b in zip(points.first, points.first[1:], strict=False)
+    ]
+    for i, row in enumerate(rows):
+        assert all(lines.contains(i, exact[v]) for v in row)
+        along = [lines.parameter_of_point(i, exact[v]) for v in row]
+        assert all(one < two for one, two in pairwise(along))
+    assert len(set(exact)) == len(exact)
+    for i, j in combinations(range(len(rows)), 2):
+        assert len(set(rows[i]) & set(rows[j])) == (lines.rank[i] != lines.rank[j])
+
+
+@pytest.mark.parametrize("source", SOURCES)
+def test_faces_are_convex_cells_of_the_plane(source):
+    prepared = prepare(made(source), parallels=True)
+    lines = lines_of(prepared)
+    points = points_on(lines)
+    found = arrange(lines, points)
+    exact = list(placed(lines, points))
+    # Euler's formula with one vertex at infinity, where all rays end.
+    assert len(exact) + 1 - len(found.line) + found.faces == 2
+    for f in range(found.faces):
+        corners = list(found.cycle[found.first[f] : found.first[f + 1]].tolist())
+        finite = [exact[v] for v in (int(found.heads[h]) for h in corners) if v >= 0]
+        for i, (dx, dy) in enumerate(lines.d):
+            sides = {(s > 0) - (s < 0) for s in (dx * y - dy * x - lines.c[i] for x, y in finite)}
+            assert not {-1, 1} <= sides  # no line runs through a face
+
+
+@pytest.mark.parametrize("source", SOURCES)
+@pytest.mark.parametrize("seed", [0, 3])
+def test_triangles_of_the_plane_fit_together(source, seed):
+    roots = arranged_roots(prepare(made(source), parallels=True), seed)
+    assert min(areas(roots)) > 0
+    roots.opposite()  # every side has two triangles, but those at infinity
+
+
+@pytest.mark.parametrize("source", POLYGONS)
+@pytest.mark.parametrize("index", [0, 1, 2])
+def test_triangles_fill_a_polygon(source, index):
+    several = (made(source, k) for k in count())
+    polygon = next(islice((p for p in several if p.kind == "polygon"), index, None))
+    roots = arranged_interior(prepare(polygon, parallels=False), index)
+    assert min(areas(roots)) > 0
+    roots.opposite()
+    p = [polygon.exact_vertex(k) for k in range(polygon.n)]
+    twice = sum(a[0] * b[1] - a[1] * b[0] for a, b in zip(p, [*p[1:], p[0]], strict=True))
+    assert sum(areas(roots)) == abs(twice)
+
+
+@pytest.mark.parametrize("source", ["segments", "square-grid", "aligned", "lattice-star"])
+def test_no_line_crosses_a_triangle_but_at_its_own_segment(source):
+    prepared = prepare(made(source), parallels=True)
+    roots = arranged_roots(prepared, 0)
+    for row in roots.triangles.tolist():
+        corners = [homogeneous(roots, c) for c in row]
+        for k, (a, b) in enumerate(prepared.instance.rational_segments()):
+            line = [determinant((*a, Fraction(1)), (*b, Fraction(1)), c) for c in corners]
+            if min(line) < 0 < max(line):
+                # A triangle beside a piece of the segment k: its side ends on the segment.
+                on = [c for c, side in zip(row, line, strict=True) if side == 0]
+                assert on
+                assert any(
+                    2 * k in roots.corners.incident[c] or 2 * k + 1 in roots.corners.incident[c]
+                    for c in on
+                )
+
+
+@pytest.mark.parametrize("domain", ["plane", "interior"])
+def test_a_hub_becomes_a_corner_and_nothing_else_changes(domain):
+    polygon = made("lattice-star", 4)
+    prepared = prepare(polygon, parallels=True)
+    hubs = [(Fraction(1, 97), Fraction(1, 89)), (Fraction(1, 96), Fraction(1, 89))]
+    if domain == "plane":
+        hubs.append((Fraction(10**7, 3), Fraction(10**9, 7)))
+        roots = arranged_roots(prepared, 0, hubs, [(Fraction(1), Fraction(1, 7))])
+    else:
+        roots = arranged_interior(prepared, 0, hubs)
+        assert sum(areas(roots)) == sum(areas(arranged_interior(prepared, 0)))
+    assert min(areas(roots)) > 0
+    roots.opposite()
+    exact = list(roots.corners.exact)
+    for hub in hubs:
+        number = exact.index(hub)
+        assert roots.corners.special[number]
+        around = roots.triangles[(roots.triangles == number).any(axis=1)]
+        assert len(around) >= 3
+        assert not roots.corners.special[np.setdiff1d(around, [number])].any()
+
+
+def test_coordinates_are_those_of_the_exact_points():
+    polygon = made("rational")
+    prepared = prepare(polygon, parallels=True)
+    lines = lines_of(prepared)
+    corners = ArrangedCorners(prepared, lines, points_on(lines))
+    for (high_x, low_x, high_y, low_y), (x, y) in zip(corners.frame, corners.exact, strict=True):
+        for value, high, low, centre in (
+            (x, high_x, low_x, prepared.centre[0]),
+            (y, high_y, low_y, prepared.centre[1]),
+        ):
+            true = (value - centre) * prepared.scale
+            assert abs(Fraction(high) + Fraction(low) - true) <= abs(true) / 2**100
+
+
+def test_near_the_hull_nothing_is_left_out():
+    """Crossings in the polygon's bounding box that are inside its hull are found on both lines."""
+    polygon = Instance.from_generated(generate("star", 9, 5))
+    prepared = prepare(polygon, parallels=False)
+    lines = lines_of(prepared, squares=False)
+    every, some = points_on(lines), points_on(lines, within=within_hull(lines))
+    inside = set(placed(lines, some))
+    hull = _hull([p for segment in lines.ends for p in segment])
+    sides = [*pairwise(hull), (hull[-1], hull[0])]
+    for point in placed(lines, every):
+        if all(orientation(a, b, point) >= 0 for a, b in sides):
+            assert point in inside
+    assert len(inside) < len(every.pairs)
+
+
+def _hull(points):
+    points = sorted({(Fraction(x), Fraction(y)) for x, y in points})
+    chains = []
+    for row in (points, points[::-1]):
+        chain = []
+        for p in row:
+            while len(chain) > 1 and orientation(chain[-2], chain[-1], p) <= 0:
+                chain.pop()
+            chain.append(p)
+        chains += chain[:-1]
+    return chains
+
+
+@pytest.mark.parametrize(("family", "n"), [("grid", 24), ("segments", 24), ("zigzag", 14)])
+def test_no_winner_is_sifted_out(family, n):
+    """The segment seen under the least angle from a point is a candidate of its triangle."""
+    rng = random.Random(5)
+    made_here = Instance.from_generated(generate(family, n, 3))
+    prepared = prepare(made_here, parallels=True)
+    roots = arranged_roots(prepared, 0)
+    frame, weights, _, _ = roots.corners.arrays(prepared.centre, prepared.scale)
+    first, rows = tie_arrays(set(), len(weights))
+    world = (prepared.lines, prepared.lengths, prepared.classes, first, rows)
+    start, number, flat = sift_triangles(
+        *(roots.triangles, frame, weights, n, prepared.segments, prepared.size, 1.0, False),
+        world,
+        1,
+    )
+    assert number.mean() < 0.75 * n
+    segments = made_here.rational_segments()
+    for t in rng.sample(range(len(roots.triangles)), 150):
+        shares = [Fraction(rng.randint(1, 99)) for _ in range(3)]
+        corners = [homogeneous(roots, c) for c in roots.triangles[t].tolist()]
+        x, y, w = (
+            sum((s * c[axis] for s, c in zip(shares, corners, strict=True)), Fraction(0))
+            for axis in range(3)
+        )
+        if w == 0:
+            continue
+        point = (x / w, y / w)
+        best = 0
+        for k in range(1, n):
+            order = compare_visual_angles(point, segments[best], segments[k])
+            best = k if order is not None and order > 0 else best
+        assert best in flat[start[t] : start[t] + number[t]]
