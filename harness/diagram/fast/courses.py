@@ -138,7 +138,6 @@ class _Horizon:
         if window is not None:
             low, high = np.minimum(low, window[:2]), np.maximum(high, window[2:])
         self._centre = (low + high) / 2
-        # Unbounded leaves begin within six times the reach of the segments.
         self._radius = float(np.hypot(*(high - low))) + 8 * reach
 
     def cut(self, arc: LeafArc, end: int) -> float:

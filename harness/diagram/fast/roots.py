@@ -3,17 +3,20 @@
 The subdivision is exact as long as no vertex of the diagram lies on a side of a triangle and no
 edge runs along one.  Input is often symmetric, so the sides must not be: every inner side has at
 least one corner at an arbitrarily chosen, *free* point, and at most one *special* corner, where
-something is known to happen: a segment's endpoint, a corner of the domain.  At special corners the
-forms that vanish are known by construction (``incident``).  (A free point that is not free enough
-shows as a contradiction and is replaced, with all others, by the next choice.)
+something is known to happen: a segment's endpoint, a corner of the domain, a crossing of lines.  At
+special corners the forms that vanish are known by construction (``incident``).  (A free point that
+is not free enough shows as a contradiction and is replaced, with all others, by the next choice.)
 
 kernel    its corners c_k are special; on every side a free point g_k.  Triangles
           (g_{k−1}, c_k, g_k), and halving chords of the polygon of the g_k.
-interior  of a star-shaped polygon: a fan about a free point of the kernel; of others: a
-          triangulation, refined as in the plane.
-plane     a Delaunay triangulation of all endpoints and a large free triangle about them; in every
-          triangle a free point, on every side between two endpoints a free point beside it.
-          Outside the large triangle, triangles with corners at infinity.
+plane,    for the smallest angle: the faces of the arrangement of all segments' lines, each a fan
+interior  about a free point (:mod:`harness.diagram.fast.faces`).  A line's segment owns the line
+          outside the segment, so there sides may have two special corners.
+interior  for the largest angle, or very large: of a star-shaped polygon, a fan about a free point
+          of the kernel; of others, a triangulation, refined as in the plane.
+plane     for the largest angle: a Delaunay triangulation of all endpoints and a large free triangle
+          about them; in every triangle a free point, on every side between two endpoints a free
+          point beside it.  Outside the large triangle, triangles with corners at infinity.
 """
 
 from __future__ import annotations
