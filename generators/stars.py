@@ -106,7 +106,7 @@ NEAR_REGULAR = Family(
     kind="polygon",
     summary="regular polygon with angular and radial jitter of order 1/n",
     source="smoothed analysis, after Arthur, Manthey & Röglin 2011",
-    growth="n",
+    growth="unknown",
     build=near_regular,
     parameters=(
         Parameter(
