@@ -92,7 +92,10 @@ def test_killed_at_random_moments_a_study_ends_with_the_same_rows(
         kills += 1
         rows = _rows(directory)
         whole = rows[: rows.rfind(b"\n") + 1]
-        assert whole.startswith(kept)
+        if whole.count(b"\n") <= len(uninterrupted):
+            assert whole.startswith(kept)
+        else:  # complete: the rows may be in the study's order by now
+            assert set(kept.splitlines()) <= set(whole.splitlines())
         kept = whole
         # The worst that a kill can do to the last line:
         if kept and chance.random() < 0.5:

@@ -13,6 +13,7 @@ import numpy as np
 
 from harness.diagram.fast.roots import (
     Corners,
+    Floats,
     Roots,
     between,
     free_number,
@@ -239,38 +240,48 @@ def incidences(instance: Instance, points: list[RationalPoint]) -> list[list[int
 
     O(points · segments) in doubles, exact where these leave it open.
     """
-    touching: dict[RationalPoint, set[int]] = {point: set() for point in points}
-    for k, segment in enumerate(instance.rational_segments()):
-        for point in segment:
-            if point in touching:
-                touching[point].add(k)
-    if len(points) * instance.n <= LARGEST_TABLE:
-        near = _near_lines(instance, points)
-    else:
-        near = np.zeros((0, 2), dtype=np.int64)
-    rows = [{2 * k + 1 for k in touching[point]} for point in points]
-    for number, k in near.tolist():
+    if len(points) * instance.n > LARGEST_TABLE:
+        ending: dict[RationalPoint, list[int]] = {point: [] for point in points}
+        for k, segment in enumerate(instance.rational_segments()):
+            for point in segment:
+                if point in ending:
+                    ending[point].append(2 * k + 1)
+        return [sorted(ending[point]) for point in points]
+    rows: list[list[int]] = [[] for _ in points]
+    for number, k in _near_lines(instance, points).tolist():
         a, b = instance.rational_segment(k)
-        if k not in touching[points[number]] and orientation(a, b, points[number]) == 0:
-            rows[number].add(2 * k)
+        if points[number] in (a, b):
+            rows[number].append(2 * k + 1)
+        elif orientation(a, b, points[number]) == 0:
+            rows[number].append(2 * k)
     return [sorted(row) for row in rows]
 
 
 def _near_lines(instance: Instance, points: list[RationalPoint]) -> Any:
     """Pairs (point, segment) of which the point may be on the segment's line, (k, 2)."""
-    x0, y0 = points[0]
-    p = np.array([[float(x - x0), float(y - y0)] for x, y in points])
-    ends = np.array(
-        [
-            [[float(x - x0), float(y - y0)] for x, y in segment]
-            for segment in instance.rational_segments()
-        ]
-    )
+    origin = points[0]
+    p = np.array([_about(point, origin) for point in points])
+    ends = _ends_about(instance, origin)
     d = ends[:, 1] - ends[:, 0]
     to_a = ends[None, :, 0] - p[:, None]
     across = np.abs(to_a[..., 0] * d[:, 1] - to_a[..., 1] * d[:, 0])
     reach = np.abs(ends).max() + np.abs(p).max()
     return np.argwhere(across <= 1e-9 * reach * np.abs(d).sum(axis=1))
+
+
+def _about(point: RationalPoint, origin: RationalPoint) -> list[float]:
+    return [float(point[0] - origin[0]), float(point[1] - origin[1])]
+
+
+def _ends_about(instance: Instance, origin: RationalPoint) -> Floats:
+    """The endpoints (n, 2, 2) about a point, with errors far below 1e-9 of their spread."""
+    ends = instance.segments
+    size = np.ptp(ends.reshape(-1, 2), axis=0).max()
+    if np.spacing(np.abs(ends).max()) < 1e-14 * size:
+        about: Floats = ends - np.array([float(c) for c in origin])
+        return about
+    exact = instance.rational_segments()
+    return np.array([[_about(point, origin) for point in segment] for segment in exact])
 
 
 def _same_direction(d: RationalPoint, e: RationalPoint) -> bool:
