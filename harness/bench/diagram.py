@@ -10,7 +10,8 @@ import generators
 from harness.bench.benchmark import Benchmark, Case, Comparison, Fact, Measured, Target
 from harness.bench.timing import seconds_of, timed
 from harness.diagram import build
-from harness.diagram.checks import euler_holds
+from harness.diagram.checks import InsaneMap
+from harness.diagram.identities import broken_identity
 from harness.geometry.compiling import LARGE
 from harness.geometry.instance import Instance
 from harness.geometry.kernel import kernel
@@ -106,7 +107,7 @@ def measure(task: Task, *, repeat: int, workers: int | None) -> Measured:
     ``workers``: how many the builder is to use; None leaves it to the builder.
 
     Raises:
-        InsaneMap: Euler's identity fails.
+        InsaneMap: Euler's identity, or another that holds for all counts, fails.
         UnsteadyResult: two repeats counted differently.
     """
     warming = seconds_of(warm_up, task.builder, task.n)
@@ -120,8 +121,10 @@ def measure(task: Task, *, repeat: int, workers: int | None) -> Measured:
         essence=lambda built: str(built[1].as_dict()),
         repeat=repeat,
     )
-    peak = peak_mib()  # now: the check below needs memory of its own
-    euler_holds(diagram)
+    peak = peak_mib()
+    broken = broken_identity(counts)
+    if broken is not None:
+        raise InsaneMap(f"{task.family}, n = {task.n}: {broken}")
     work: Work | None = getattr(diagram, "work", None)  # the reference builder does not tell
     return Measured(
         timings=timings,
