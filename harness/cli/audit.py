@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from harness.cli.options import natural, positive
 from harness.errors import UserError
 
 if TYPE_CHECKING:
@@ -44,14 +45,14 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument(
         "--count",
         metavar="N",
-        type=_positive,
+        type=positive,
         help="instances of each claim, besides series of growing n (default: the claim's own)",
     )
     parser.add_argument(
-        "--seed", metavar="S", type=_whole, default=0, help="other instances (default: 0)"
+        "--seed", metavar="S", type=natural, default=0, help="other instances (default: 0)"
     )
     parser.add_argument(
-        "-j", "--jobs", metavar="K", type=_positive, help="processes (default: processors)"
+        "-j", "--jobs", metavar="K", type=positive, help="processes (default: processors)"
     )
     parser.add_argument(
         "--resume",
@@ -124,15 +125,3 @@ def _command(args: argparse.Namespace, *, resume: bool) -> str:
     if args.seed:
         words += ["--seed", str(args.seed)]
     return shlex.join([*words, "--resume"] if resume else words)
-
-
-def _positive(text: str) -> int:
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"{text!r} must be a whole number, at least 1")
-    return int(text)
-
-
-def _whole(text: str) -> int:
-    if not text.isdecimal():
-        raise argparse.ArgumentTypeError(f"{text!r} must be a whole number, at least 0")
-    return int(text)

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from harness.bench import BENCHMARKS, benchmark_named
+from harness.cli.options import positive
 from harness.diagram import BUILDERS
 from harness.errors import UserError
 
@@ -44,14 +45,14 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )
     parser.add_argument(
         "--repeat",
-        type=_positive,
+        type=positive,
         default=5,
         metavar="K",
         help="timings of each instance (default: %(default)s)",
     )
     parser.add_argument(
         "--workers",
-        type=_positive,
+        type=positive,
         metavar="W",
         help="processors that a builder uses (default: what it chooses)",
     )
@@ -128,9 +129,3 @@ def _words(args: argparse.Namespace, only: Sequence[str] | None) -> list[str]:
     if args.quick:
         words.append("--quick")
     return [*words, "--only", *only] if only else words
-
-
-def _positive(text: str) -> int:
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"{text!r} must be a whole number, at least 1")
-    return int(text)

@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from harness.cli.options import natural, positive
 from harness.mesh.options import OBJECTIVES, REMEDIES, SWEEPS, TOPOLOGIES
 
 if TYPE_CHECKING:
@@ -80,7 +81,7 @@ def _register_improve(verbs: argparse._SubParsersAction[argparse.ArgumentParser]
     )
     parser.add_argument(
         "--sweeps",
-        type=_count,
+        type=natural,
         default=SWEEPS,
         metavar="K",
         help="visit each vertex at most K times on average (default: %(default)s)",
@@ -108,7 +109,7 @@ def _register_improve(verbs: argparse._SubParsersAction[argparse.ArgumentParser]
     )
     parser.add_argument(
         "--workers",
-        type=_positive,
+        type=positive,
         metavar="W",
         help="threads (default: one per processor); the result does not depend on it",
     )
@@ -244,18 +245,6 @@ def draw(args: argparse.Namespace) -> int:
     else:
         replace(args.output, picture)
     return 0
-
-
-def _count(text: str) -> int:
-    if not text.isdecimal():
-        raise argparse.ArgumentTypeError(f"{text!r} must be a whole number, at least 0")
-    return int(text)
-
-
-def _positive(text: str) -> int:
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"{text!r} must be a whole number, at least 1")
-    return int(text)
 
 
 def _seconds(text: str) -> float:

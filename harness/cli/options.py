@@ -1,4 +1,4 @@
-"""What several verbs share: the options that choose a diagram, and reading its instance."""
+"""What several verbs share: the options that choose a diagram, numbers, and reading an instance."""
 
 from __future__ import annotations
 
@@ -33,6 +33,22 @@ def add_diagram_options(parser: argparse.ArgumentParser) -> None:
         default=BUILDERS[0],
         help="how the diagram is built (default: %(default)s)",
     )
+
+
+def positive(text: str) -> int:
+    """An argument that is a whole number, at least 1."""
+    return _whole(text, 1)
+
+
+def natural(text: str) -> int:
+    """An argument that is a whole number, at least 0."""
+    return _whole(text, 0)
+
+
+def _whole(text: str, least: int) -> int:
+    if not text.isdecimal() or int(text) < least:
+        raise argparse.ArgumentTypeError(f"{text!r} must be a whole number, at least {least}")
+    return int(text)
 
 
 def load(path: str) -> Instance:

@@ -9,6 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from harness.cli.options import positive
 from harness.errors import UserError
 
 if TYPE_CHECKING:
@@ -65,7 +66,7 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "--out", metavar="DIR", type=Path, help="the study's directory (default: results/NAME)"
     )
     parser.add_argument(
-        "-j", "--jobs", metavar="K", type=_positive, help="tasks at a time (default: processors)"
+        "-j", "--jobs", metavar="K", type=positive, help="tasks at a time (default: processors)"
     )
     parser.add_argument(
         "--engine", choices=("local", "dask"), default="local", help="where tasks run"
@@ -210,9 +211,3 @@ def _command(args: argparse.Namespace, mode: str | None) -> str:
 
 def _mode(name: str) -> dict[str, Any]:
     return {"dest": "mode", "action": "store_const", "const": name, "default": "new"}
-
-
-def _positive(text: str) -> int:
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"{text!r} must be a whole number, at least 1")
-    return int(text)

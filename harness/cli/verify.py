@@ -10,6 +10,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from harness.cli.options import positive
 from harness.diagram import BUILDERS
 from harness.errors import UserError
 
@@ -51,7 +52,7 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     how_many.add_argument(
         "--sample",
         metavar="K",
-        type=_positive,
+        type=positive,
         default=SAMPLE,
         help="count K random rows again (default: %(default)s)",
     )
@@ -66,7 +67,7 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         help="who counts (default: another than before where that is feasible)",
     )
     parser.add_argument(
-        "-j", "--jobs", metavar="K", type=_positive, help="rows at a time (default: processors)"
+        "-j", "--jobs", metavar="K", type=positive, help="rows at a time (default: processors)"
     )
     parser.add_argument("--json", action="store_true", help="one JSON object instead of the table")
     parser.set_defaults(run=run)
@@ -167,9 +168,3 @@ def _sentence(verification: Verification, wrong: int) -> str:
     if verification.missing is None:
         parts.append("no manifest: seeds taken as they stand")
     return ", ".join(parts) + "."
-
-
-def _positive(text: str) -> int:
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"{text!r} must be a whole number, at least 1")
-    return int(text)
