@@ -1,10 +1,33 @@
-"""Writing a file in one step: whoever reads it, or a crash, sees the old content or the new."""
+"""Writing a file in one step: whoever reads it, or a crash, sees the old content or the new.
+
+And reading what was written so as a JSON object.
+"""
 
 from __future__ import annotations
 
+import json
 import os
 import tempfile
 from pathlib import Path
+from typing import Any
+
+from harness.errors import UserError
+
+
+def read_object(path: Path, name: str) -> dict[str, Any] | None:
+    """The JSON object in a file; None if there is no such file.
+
+    Raises UserError if it cannot be read or holds something else than ``name``.
+    """
+    if not path.exists():
+        return None
+    try:
+        found = json.loads(path.read_text(encoding="utf-8-sig"))
+    except (OSError, ValueError, RecursionError) as error:
+        raise UserError(f"{path}: cannot be read: {error}") from None
+    if not isinstance(found, dict):
+        raise UserError(f"{path}: not {name}")
+    return found
 
 
 def replace(path: Path, content: bytes) -> None:

@@ -17,7 +17,7 @@ from typing import Any
 import harness
 from harness.audit.claim import OUTCOMES, Row
 from harness.errors import UserError
-from harness.files import replace
+from harness.files import read_object, replace
 
 ROWS, VERDICTS, MANIFEST, INSTANCES = "rows.csv", "verdicts.json", "manifest.json", "instances"
 COLUMNS = ("claim", "family", "n", "params", "seed", "outcome", "message", "facts")
@@ -31,13 +31,10 @@ def read_verdicts(directory: Path) -> dict[str, Record]:
     Raises UserError if the file is damaged.
     """
     path = directory / VERDICTS
-    if not path.exists():
+    records = read_object(path, "the verdicts of an audit")
+    if records is None:
         return {}
-    try:
-        records = json.loads(path.read_text(encoding="utf-8"))
-    except ValueError as error:
-        raise UserError(f"{path}: cannot be read: {error}") from None
-    if not isinstance(records, dict) or not all(
+    if not all(
         isinstance(record, dict) and {"claim", "count", "seed", "tally", "verdict"} <= set(record)
         for record in records.values()
     ):
@@ -119,10 +116,10 @@ def write_manifest(directory: Path, command: str, seed: int, replaced: Sequence[
 def _runs(directory: Path) -> list[Any]:
     """The runs that a manifest knows; none if it cannot be read."""
     try:
-        manifest = json.loads((directory / MANIFEST).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+        manifest = read_object(directory / MANIFEST, "a manifest") or {}
+    except UserError:
         return []
-    runs = manifest.get("runs") if isinstance(manifest, dict) else None
+    runs = manifest.get("runs")
     return runs if isinstance(runs, list) else []
 
 

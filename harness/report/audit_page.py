@@ -2,28 +2,24 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
-
-from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from harness.audit.claim import Claim
 from harness.audit.registry import CLAIMS
 from harness.audit.store import INSTANCES, MANIFEST, read_verdicts
 from harness.errors import UserError
-from harness.files import replace
+from harness.files import read_object
 from harness.geometry.formats import read_instance
 from harness.geometry.instance import Instance
 from harness.report import provenance
 from harness.report.audit_drawing import example_svg, growth_svg, profile_svg, short
 from harness.report.labels import plain
+from harness.report.pages import REPORT, environment, write_files
 from harness.report.style import inline
 
 Record = Mapping[str, Any]
-
-PAGE = "report.html"
 
 
 def write_audit_page(directory: Path) -> tuple[Path, list[str]]:
@@ -40,30 +36,16 @@ def write_audit_page(directory: Path) -> tuple[Path, list[str]]:
         for name, record in records.items()
         if name in CLAIMS
     ]
-    (directory / "figures").mkdir(exist_ok=True)
-    for name, svg in figures.items():
-        replace(directory / "figures" / f"{name}.svg", svg.encode())
-    environment = Environment(
-        loader=PackageLoader("harness.report"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
+    manifest = read_object(directory / MANIFEST, "a manifest")
+    page = (
+        environment()
+        .get_template("audit.html")
+        .render(claims=views, provenance=provenance.entries(manifest))
     )
-    page = environment.get_template("audit.html").render(
-        claims=views, provenance=provenance.entries(_manifest(directory))
-    )
-    replace(directory / PAGE, (page + "\n").encode())
-    return directory / PAGE, [f"{view['name']}: {view['verdict']}" for view in views]
-
-
-def _manifest(directory: Path) -> Mapping[str, Any] | None:
-    path = directory / MANIFEST
-    try:
-        loaded = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return None
-    return loaded if isinstance(loaded, dict) else None
+    files = {f"figures/{name}.svg": svg for name, svg in figures.items()}
+    return write_files(directory, {**files, REPORT: page + "\n"}), [
+        f"{view['name']}: {view['verdict']}" for view in views
+    ]
 
 
 def tone(claim: Claim, record: Record) -> str:

@@ -11,11 +11,8 @@ import pandas as pd
 
 from harness.analysis import GroupGrowth, analyse_group, split
 from harness.errors import UserError
-from harness.files import replace
 from harness.report import summary
 from harness.report.labels import curve_labels
-
-REPORT = "report.html"
 
 
 @dataclass(frozen=True)
@@ -82,17 +79,8 @@ def read(directory: Path, load: Callable[[Path], pd.DataFrame] | None = None) ->
 
 
 def write(study: StudyGrowth, directory: Path) -> Path:
-    """Write the report of an analysed study; each file in one step.  Returns the page's path.
-
-    The page comes last: when it is there, so is everything it links to.
-    """
+    """Write the report of an analysed study.  Returns the page's path."""
     from harness.report.page import outputs
+    from harness.report.pages import write_files
 
-    files = outputs(study)
-    page = files.pop(REPORT)
-    for relative, text in files.items():
-        path = directory / relative
-        path.parent.mkdir(parents=True, exist_ok=True)
-        replace(path, text.encode())
-    replace(directory / REPORT, page.encode())
-    return directory / REPORT
+    return write_files(directory, outputs(study))

@@ -8,15 +8,13 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
 from matplotlib.figure import Figure
 
 from harness.analysis.meshes import PLAIN, MethodFindings, answer, findings, lines, median
 from harness.errors import UserError
-from harness.files import replace
 from harness.report import mesh_figures, provenance
-from harness.report.build import REPORT
 from harness.report.labels import number
+from harness.report.pages import REPORT, environment, write_files
 from harness.report.sections import Cell, Table
 from harness.report.style import inline, render
 from harness.study.manifest import read_manifest
@@ -44,29 +42,26 @@ def write_mesh_report(directory: Path) -> tuple[Path, list[str]]:
     if not done:
         raise UserError(f"{directory}: there are no finished rows to report on")
     found = findings(rows)
-    measured = _render(directory, _figures(done))
-    paper = _render(directory, _paper_figures())
-    environment = Environment(
-        loader=PackageLoader("harness.report"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
+    files: dict[str, str] = {}
+    measured = _render(_figures(done), files)
+    paper = _render(_paper_figures(), files)
     manifest = read_manifest(directory)
-    page = environment.get_template("meshes.html").render(
-        name=NAME,
-        description=DESCRIPTION,
-        tasks=_tasks(rows, manifest),
-        answer=answer(found),
-        findings=findings_table(found),
-        sizes=[_size_table(done, *group) for group in _groups(done)],
-        figures=measured,
-        paper=paper,
-        provenance=provenance.entries(manifest),
+    page = (
+        environment()
+        .get_template("meshes.html")
+        .render(
+            name=NAME,
+            description=DESCRIPTION,
+            tasks=_tasks(rows, manifest),
+            answer=answer(found),
+            findings=findings_table(found),
+            sizes=[_size_table(done, *group) for group in _groups(done)],
+            figures=measured,
+            paper=paper,
+            provenance=provenance.entries(manifest),
+        )
     )
-    replace(directory / REPORT, (page + "\n").encode())
-    return directory / REPORT, lines(found)
+    return write_files(directory, {**files, REPORT: page + "\n"}), lines(found)
 
 
 def _tasks(rows: Sequence[Row], manifest: Any) -> str:
@@ -149,14 +144,13 @@ def _known(rows: Sequence[Row], column: str) -> float | None:
     return median(there, column) if there else None
 
 
-def _render(directory: Path, figures: dict[str, Drawn]) -> list[dict[str, str]]:
-    """Write the figures; what the page shows of each."""
+def _render(figures: dict[str, Drawn], files: dict[str, str]) -> list[dict[str, str]]:
+    """What the page shows of each figure; their documents are added to ``files``."""
     shown = []
-    (directory / "figures").mkdir(exist_ok=True)
     for name, (draw, width, height, caption) in figures.items():
         svg = render(draw, width, height)
         path = f"figures/{name}.svg"
-        replace(directory / path, svg.encode())
+        files[path] = svg
         kind = "wide" if width > MIDDLE else "middle"
         picture = inline(svg, name, caption)
         shown.append({"svg": picture, "caption": caption, "path": path, "kind": kind})

@@ -7,7 +7,6 @@ from functools import partial
 from typing import Any
 
 import pandas as pd
-from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from harness.analysis import MODELS, Check, GroupGrowth, check, design_of
 from harness.analysis import challenge as challenging
@@ -15,10 +14,11 @@ from harness.analysis import planted as planting
 from harness.analysis.models import GREATEST_SHARE, LEAST_SHARE
 from harness.analysis.statistics import RESAMPLES
 from harness.report import figures, provenance, summary, tables
-from harness.report.build import REPORT, StudyGrowth
+from harness.report.build import StudyGrowth
 from harness.report.chapters import Part, chapters
 from harness.report.examples import Example, example
 from harness.report.labels import number, percent, plain, sizes
+from harness.report.pages import REPORT, environment
 from harness.report.sections import Cell, Download, Section, Table, section
 from harness.report.style import inline, render
 from harness.report.verdicts import domain_rank, domains, verdict_cell
@@ -50,17 +50,6 @@ def outputs(study: StudyGrowth) -> dict[str, str]:
         files.update(chapter.files)
     files[REPORT] = _page(study, sections, checks, downloads, overviews, examples, special)
     return files
-
-
-def environment() -> Environment:
-    """Where the templates of the pages are found."""
-    return Environment(
-        loader=PackageLoader("harness.report"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
 
 
 def _page(

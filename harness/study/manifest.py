@@ -21,8 +21,7 @@ from typing import TYPE_CHECKING, Any
 import psutil
 
 import harness
-from harness.errors import UserError
-from harness.files import replace
+from harness.files import read_object, replace
 from harness.study.checks import check_manifest
 from harness.study.schema import SCHEMA, migrate_manifest
 from harness.study.task import SEED_RULE
@@ -56,14 +55,9 @@ def read_manifest(directory: Path) -> Manifest | None:
     Raises UserError if it is damaged, or if a newer program wrote it.
     """
     path = directory / MANIFEST
-    if not path.exists():
+    manifest = read_object(path, "a manifest")
+    if manifest is None:
         return None
-    try:
-        manifest = json.loads(path.read_text(encoding="utf-8-sig"))
-    except (OSError, ValueError, RecursionError) as error:
-        raise UserError(f"{path}: cannot be read: {error}") from None
-    if not isinstance(manifest, dict):
-        raise UserError(f"{path}: not a manifest")
     manifest = migrate_manifest(manifest, str(path))
     check_manifest(manifest, str(path))
     return manifest

@@ -13,9 +13,10 @@ import pytest
 import generators
 from harness.diagram import build
 from harness.geometry.instance import Instance
-from harness.report.build import REPORT, StudyGrowth, analyse
+from harness.report.build import StudyGrowth, analyse
 from harness.report.examples import MOST, example
 from harness.report.page import outputs
+from harness.report.pages import REPORT
 from tests.analysis.frames import rows
 from tests.report.studies import MANIFEST, defaults, sample
 

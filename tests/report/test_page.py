@@ -15,8 +15,9 @@ from urllib.parse import unquote
 import pandas as pd
 import pytest
 
-from harness.report.build import REPORT, analyse
+from harness.report.build import analyse
 from harness.report.page import outputs
+from harness.report.pages import REPORT
 from tests.report.pages import Page
 from tests.report.studies import MANIFEST, STUDY_FILE, sample, store
 

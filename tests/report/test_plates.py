@@ -159,7 +159,7 @@ def test_wrong_names_and_damaged_captions_are_refused(tmp_path: Path, capsys) ->
     assert main(["figures", "figure-7", "--out", str(tmp_path)]) == 1
     assert "no figure is called 'figure-7'" in capsys.readouterr().err
     (tmp_path / "captions.json").write_text("{")
-    with pytest.raises(UserError, match=r"captions\.json: damaged"):
+    with pytest.raises(UserError, match=r"captions\.json: cannot be read"):
         put(PLATES["figure-1"], tmp_path, NOWHERE)
     (tmp_path / "captions.json").write_text("[]")
     with pytest.raises(UserError, match="not a list of captions"):

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from harness.errors import UserError
-from harness.files import replace
+from harness.files import read_object
 from harness.report.combined.audit import audit_chapter
 from harness.report.combined.growth import linear_chapter
 from harness.report.combined.parts import Chapter, Maker, Workshop, view
 from harness.report.combined.practice import bench_chapter, mesh_chapter
 from harness.report.combined.weaves import constant_chapter, noise_chapter
-from harness.report.page import environment, method_facts
+from harness.report.page import method_facts
+from harness.report.pages import REPORT, environment, write_files
 from harness.report.provenance import entries
 from harness.study.manifest import MANIFEST, read_manifest
 from harness.study.store import ROWS
@@ -28,7 +27,6 @@ CHAPTERS: tuple[Maker, ...] = (
     bench_chapter,
 )
 GALLERY = ("figure-1", "figure-2", "figure-3", "figure-4", "star", "peaks", "families")
-REPORT = "report.html"
 
 
 def outputs(directory: Path) -> tuple[dict[str, str], list[str]]:
@@ -40,15 +38,9 @@ def outputs(directory: Path) -> tuple[dict[str, str], list[str]]:
 
 
 def write(directory: Path) -> tuple[Path, list[str]]:
-    """Write every file of the report in one step each, the page last."""
+    """Write the report; returns its page and the answers for a terminal."""
     files, answers = outputs(directory)
-    page = files.pop(REPORT)
-    for relative, text in files.items():
-        path = directory / relative
-        path.parent.mkdir(parents=True, exist_ok=True)
-        replace(path, text.encode())
-    replace(directory / REPORT, page.encode())
-    return directory / REPORT, answers
+    return write_files(directory, files), answers
 
 
 def lines(chapters: Sequence[Chapter]) -> list[str]:
@@ -86,13 +78,5 @@ def _source(results: Path, name: str) -> dict[str, Any]:
 
 def _manifest(directory: Path) -> dict[str, Any] | None:
     """The manifest; those of the audit and of meshes have no schema that could be too new."""
-    path = directory / MANIFEST
-    if not path.exists():
-        return None
-    try:
-        found = json.loads(path.read_text(encoding="utf-8"))
-    except ValueError as error:
-        raise UserError(f"{path}: cannot be read: {error}") from None
-    if not isinstance(found, dict):
-        raise UserError(f"{path}: not a manifest")
-    return read_manifest(directory) if "schema" in found else found
+    found = read_object(directory / MANIFEST, "a manifest")
+    return read_manifest(directory) if found and "schema" in found else found

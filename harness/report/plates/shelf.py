@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from harness.errors import UserError
-from harness.files import replace
+from harness.files import read_object, replace
 from harness.report.plates.plate import Plate, printed
 from harness.report.tables import to_csv
 
@@ -48,16 +47,7 @@ def put(plate: Plate, directory: Path, results: Path, form: str = "svg") -> Path
 
 def captions(directory: Path) -> dict[str, Any]:
     """The entries of a directory's ``captions.json``; none if there is no such file."""
-    path = directory / CAPTIONS
-    if not path.exists():
-        return {}
-    try:
-        found = json.loads(path.read_text(encoding="utf-8"))
-    except ValueError as error:
-        raise UserError(f"{path}: damaged: {error}") from None
-    if not isinstance(found, dict):
-        raise UserError(f"{path}: not a list of captions")
-    return found
+    return read_object(directory / CAPTIONS, "a list of captions") or {}
 
 
 def shelf(directory: Path) -> dict[str, Shown]:
