@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import argparse
-import sys
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from harness.cli.options import FORMATS, add_diagram_options, load
+from harness.cli.pictures import add_picture_options, picture_format, write_picture
 
 if TYPE_CHECKING:
     from harness.geometry.instance import Instance
-
-PICTURES = (".svg", ".png", ".pdf")
 
 DESCRIPTION = """\
 Draw a diagram: cells coloured by segment, edges as true curves, nodes by kind.  A kernel much
@@ -25,17 +22,8 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "draw", help="draw a diagram", description=DESCRIPTION, allow_abbrev=False
     )
     parser.add_argument("file", metavar="FILE", help=FORMATS)
-    parser.add_argument(
-        "-o",
-        "--output",
-        metavar="PICTURE",
-        type=Path,
-        help="where to write: .svg, .png or .pdf (default: SVG on standard output)",
-    )
+    add_picture_options(parser)
     add_diagram_options(parser)
-    parser.add_argument(
-        "--width", type=float, default=7.0, metavar="INCHES", help="default: %(default)g"
-    )
     parser.add_argument(
         "--window",
         nargs=4,
@@ -52,25 +40,21 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument("--no-nodes", action="store_true", help="leave out the marks of nodes")
     parser.add_argument("--title", metavar="TEXT", help="default: the name of the instance")
     parser.add_argument("--caption", metavar="TEXT", help="default: the counts; empty for none")
-    parser.set_defaults(run=run, usage_error=parser.error)
+    parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:
     """Write the picture; exit status 0."""
-    target: Path | None = args.output if args.output != Path("-") else None
-    suffix = ".svg" if target is None else target.suffix.lower()
-    if suffix not in PICTURES:
-        args.usage_error(f"-o {target}: a picture is {', '.join(PICTURES[:-1])} or {PICTURES[-1]}")
+    kind = picture_format(args)
 
     from harness.diagram import build
-    from harness.files import replace
     from harness.report.drawing import render
 
     instance = load(args.file)
     marked = _peak(instance, args) if args.peak else None
     picture = render(
         build(instance, args.domain, args.objective, args.builder),
-        suffix[1:],
+        kind,
         width=args.width,
         window=args.window,
         labels=args.labels,
@@ -79,10 +63,7 @@ def run(args: argparse.Namespace) -> int:
         caption=args.caption,
         peak=marked,
     )
-    if target is None:
-        sys.stdout.buffer.write(picture)
-    else:
-        replace(target, picture)
+    write_picture(args, picture)
     return 0
 
 

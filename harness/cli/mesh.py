@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from harness.cli.options import natural, positive
+from harness.cli.pictures import add_picture_options, picture_format, write_picture
 from harness.mesh.options import OBJECTIVES, REMEDIES, SWEEPS, TOPOLOGIES
 
 if TYPE_CHECKING:
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
     from harness.mesh.files import Stored
     from harness.mesh.state import Sweep
 
-PICTURES = (".svg", ".png", ".pdf")
 FORMATS = "a mesh file of any format that meshio knows: VTK, VTU, Gmsh, OBJ, OFF, PLY, …"
 
 DESCRIPTION = "Triangulations of the plane: make their smallest angles larger, and draw them."
@@ -123,18 +123,9 @@ def _register_draw(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -
         "draw", help="draw a triangulation", description=DRAW, allow_abbrev=False
     )
     parser.add_argument("source", metavar="IN", type=Path, help=FORMATS)
-    parser.add_argument(
-        "-o",
-        "--output",
-        metavar="PICTURE",
-        type=Path,
-        help="where to write: .svg, .png or .pdf (default: SVG on standard output)",
-    )
-    parser.add_argument(
-        "--width", type=float, default=7.0, metavar="INCHES", help="default: %(default)g"
-    )
+    add_picture_options(parser)
     parser.add_argument("--title", metavar="TEXT", help="default: the name of the file")
-    parser.set_defaults(run=draw, usage_error=parser.error)
+    parser.set_defaults(run=draw)
 
 
 def improve(args: argparse.Namespace) -> int:
@@ -225,25 +216,17 @@ def _table(better: Improved, interface_edges: int) -> list[str]:
 
 def draw(args: argparse.Namespace) -> int:
     """Write the picture of a mesh; exit status 0."""
-    suffix = ".svg" if args.output is None else args.output.suffix.lower()
-    if suffix not in PICTURES:
-        args.usage_error(
-            f"-o {args.output}: a picture is {', '.join(PICTURES[:-1])} or {PICTURES[-1]}"
-        )
+    kind = picture_format(args)
     if not 0.5 <= args.width <= 100:
         args.usage_error(f"--width {args.width:g}: must be from 0.5 to 100 inches")
 
-    from harness.files import replace
     from harness.mesh import read_mesh
     from harness.report.mesh_drawing import render_mesh
 
     mesh = read_mesh(args.source).mesh
     title = args.source.name if args.title is None else args.title
-    picture = render_mesh(mesh.points, mesh.triangles, suffix[1:], width=args.width, title=title)
-    if args.output is None:
-        sys.stdout.buffer.write(picture)
-    else:
-        replace(args.output, picture)
+    picture = render_mesh(mesh.points, mesh.triangles, kind, width=args.width, title=title)
+    write_picture(args, picture)
     return 0
 
 

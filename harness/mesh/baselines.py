@@ -9,7 +9,7 @@ import numpy as np
 
 from harness.geometry.jit import compiled
 from harness.mesh.angles import INVERTED, load_star, star_angles
-from harness.mesh.soft import newton_step, softness
+from harness.mesh.soft import newton_step, softness, widest_of
 
 PASSES = 12
 FIRST, LAST = 10.0, 3000.0
@@ -31,15 +31,6 @@ def laplacian_sweep(order, first, last, offsets, degrees, ring, x, y):
             x[v], y[v] = px, py
             moved += 1
     return moved
-
-
-@compiled
-def widest_of(order, first, last, degrees):
-    """The greatest degree among order[first:last]."""
-    widest = 0
-    for o in range(first, last):
-        widest = max(widest, degrees[order[o]])
-    return widest
 
 
 @compiled

@@ -53,18 +53,13 @@ def _baseline(state: State, options: Options) -> None:
 
 
 def _apex(state: State, options: Options) -> None:
-    """The paper's greedy, in portions, so that the time limit is heeded."""
+    """The paper's greedy."""
     waiting = state.free.copy()
     remedies = options.remedy in ("bisector", "both"), options.remedy in ("chord", "both")
     arrays = (*state.stars, state.free, state.x, state.y)
-    left = options.sweeps * len(state.order)
-    while left > 0 and not state.is_late:
-        portion = min(left, max(PORTION, len(state.order) // PORTIONS))
-        visits, moves, flips, done = greedy(waiting, *arrays, *remedies, portion, portion)
-        state.visits += visits
-        state.moves += moves
-        state.reconnect(flips)
-        state.record("greedy")
-        left -= max(visits, 1)
-        if done:
-            return
+    state.spend(
+        options.sweeps * len(state.order),
+        max(PORTION, len(state.order) // PORTIONS),
+        "greedy",
+        lambda portion: greedy(waiting, *arrays, *remedies, portion, portion),
+    )

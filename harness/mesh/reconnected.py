@@ -79,31 +79,23 @@ def improve_fully(state: State, sweeps: int) -> None:
     """
     improve_flipping(state, sweeps)
     waiting = state.free.copy()
-    left = EFFORT * sweeps * len(state.order)
     arrays = (*state.stars, state.free, state.x, state.y, state.origins, state.born, TARGET)
-    while left > 0 and not state.is_late:
-        visits, moves, steps, done = try_points(waiting, *arrays, min(left, len(state.free)))
-        state.visits += visits
-        state.moves += moves
-        state.reconnect(steps)
-        state.record("vertices")
-        left -= max(visits, 1)
-        if done:
-            break
+    state.spend(
+        EFFORT * sweeps * len(state.order),
+        len(state.free),
+        "vertices",
+        lambda portion: try_points(waiting, *arrays, portion),
+    )
 
 
 def _try_flips(state: State, ideal: Ints, sweeps: int) -> None:
-    """Lawson's flips, and flips with smoothing, in portions, so that the time limit is heeded."""
+    """Lawson's flips, and flips with smoothing."""
     state.reconnect(lawson(*state.stars, state.x, state.y))
     waiting = state.free.copy()
-    left = sweeps * len(state.order)
     arrays = (*state.stars, state.free, state.x, state.y, ideal, TARGET)
-    while left > 0 and not state.is_late:
-        visits, moves, flips, done = try_flips(waiting, *arrays, min(left, len(state.order)))
-        state.visits += visits
-        state.moves += moves
-        state.reconnect(flips)
-        state.record("flips")
-        left -= max(visits, 1)
-        if done:
-            break
+    state.spend(
+        sweeps * len(state.order),
+        len(state.order),
+        "flips",
+        lambda portion: try_flips(waiting, *arrays, portion),
+    )

@@ -71,15 +71,22 @@ def newton_step(px, py, k, rx, ry, angles, sharpness, shift, step):
 
 
 @compiled
+def widest_of(order, first, last, degrees):
+    """The greatest degree among order[first:last]."""
+    widest = 0
+    for o in range(first, last):
+        widest = max(widest, degrees[order[o]])
+    return widest
+
+
+@compiled
 def soft_sweep(order, first, last, offsets, degrees, ring, x, y, sharpness):
     """One guarded Newton step for each of the vertices order[first:last]; how many moved.
 
     A vertex moves only to where all its triangles are proven to be positive and the sum is less.
     The stars must be closed.
     """
-    widest = 0
-    for o in range(first, last):
-        widest = max(widest, degrees[order[o]])
+    widest = widest_of(order, first, last, degrees)
     rx, ry, step = np.empty(widest), np.empty(widest), np.empty(2)
     angles, others = np.empty(3 * widest), np.empty(3 * widest)
     moved = 0

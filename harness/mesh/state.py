@@ -24,6 +24,10 @@ SAME = 1e-9
 """Degrees by which angles that rounding alone tells apart may differ."""
 
 
+Step = Callable[[int], tuple[int, int, int, bool]]
+"""Given how many visits it may make: how many it made, moves, flips, and whether all is done."""
+
+
 @dataclass(frozen=True)
 class Sweep:
     """What the mesh looked like after a sweep: its number from 1, what was done, moves so far."""
@@ -126,6 +130,22 @@ class State:
         self.visits += len(self.order)
         self.moves += moved
         return moved
+
+    def spend(self, visits: int, portion: int, stage: str, step: Step) -> None:
+        """Take steps of at most ``portion`` visits until all is done, or time or visits are over.
+
+        After each the time limit is looked at, and the mesh recorded.
+        """
+        left = visits
+        while left > 0 and not self.is_late:
+            visited, moves, flips, done = step(min(left, portion))
+            self.visits += visited
+            self.moves += moves
+            self.reconnect(flips)
+            self.record(stage)
+            left -= max(visited, 1)
+            if done:
+                return
 
 
 @contextmanager

@@ -209,7 +209,7 @@ def roomiest_point(rings: Sequence[Points], steps: int = 24) -> tuple[Points, fl
     distance = np.full(len(grid), np.inf)
     for a, b in _chords(rings):
         inside ^= _is_left_of(grid, a, b)
-        distance = np.minimum(distance, _distance(grid, a, b))
+        distance = np.minimum(distance, distance_to_chord(grid, a, b))
     distance[~inside] = 0.0
     best = int(distance.argmax())
     return grid[best], float(distance[best])
@@ -228,7 +228,8 @@ def _is_left_of(points: Points, a: Points, b: Points) -> NDArray[np.bool_]:
     return crosses
 
 
-def _distance(points: Points, a: Points, b: Points) -> Points:
+def distance_to_chord(points: Points, a: Points, b: Points) -> Points:
+    """From the points (m, 2) to the chord ab; shape (m,)."""
     along = b - a
     square = float(along @ along)
     part = np.clip((points - a) @ along / square, 0, 1) if square else np.zeros(len(points))

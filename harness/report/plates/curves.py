@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from harness.diagram.planar_map import PlanarMap, Window
-from harness.report.drawing_shapes import Points, Shapes
+from harness.report.drawing_shapes import Points, Shapes, distance_to_chord
 
 #: Of the window's extent: a fortieth of a typographic point on a plate of five inches.
 FINE = 1 / 15_000
@@ -39,20 +39,11 @@ def thinned(curve: Points, tolerance: float) -> Points:
         first, last = waiting.pop()
         if last - first < 2:
             continue
-        away = _distance(curve[first + 1 : last], curve[first], curve[last])
+        away = distance_to_chord(curve[first + 1 : last], curve[first], curve[last])
         farthest = int(away.argmax())
         if away[farthest] > tolerance:
             middle = first + 1 + farthest
             kept[middle] = True
             waiting += [(first, middle), (middle, last)]
     result: Points = curve[kept]
-    return result
-
-
-def _distance(points: Points, a: Points, b: Points) -> Points:
-    """From the points (m, 2) to the chord ab; shape (m,)."""
-    along = b - a
-    square = float(along @ along)
-    part = np.clip((points - a) @ along / square, 0.0, 1.0) if square else np.zeros(len(points))
-    result: Points = np.hypot(*(points - a - part[:, None] * along).T)
     return result
