@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from harness.diagram.fast import chains, glue
 from harness.diagram.fast.build import Leaves
@@ -14,6 +16,11 @@ from harness.diagram.fast.prepare import Ints
 from harness.diagram.fast.roots import Roots
 from harness.diagram.planar_map import Node
 from harness.diagram.work import Contradiction
+
+#: With fewer slots and half-arcs than this, they are numbered in 32 bits: half the memory.
+LARGE = 2**31
+
+Numbers = NDArray[np.signedinteger[Any]]
 
 
 @dataclass(eq=False)
@@ -30,17 +37,17 @@ class Arrays:
 
     start: Ints
     ports: Ints
-    place: Ints
-    owner: Ints
-    arcs: Ints
-    leaf_of_arc: Ints
-    vertices: Ints
-    out_first: Ints
-    out: Ints
-    inward: Ints
-    parent: Ints
-    mate: Ints
-    following: Ints
+    place: Numbers
+    owner: Numbers
+    arcs: Numbers
+    leaf_of_arc: Numbers
+    vertices: Numbers
+    out_first: Numbers
+    out: Numbers
+    inward: Numbers
+    parent: Numbers
+    mate: Numbers
+    following: Numbers
     sides: Ints
     opposite: Ints
     special: dict[int, Node] = field(default_factory=dict)
@@ -54,33 +61,38 @@ def glued(roots: Roots, leaves: Leaves, solved: dict[int, LocalMap]) -> Arrays:
     kinds, choices = leaves.kinds.copy(), leaves.choices.copy()
     start = leaves.first_slot[:-1].copy()
     ports = np.where(kinds == EMPTY, 0, np.diff(leaves.first_slot))
-    place, owner = [leaves.slots[:, 0].astype(np.int64)], [leaves.slots[:, 1].astype(np.int64)]
+    place, owner = (np.ascontiguousarray(leaves.slots[:, k]) for k in (0, 1))
     used = len(leaves.slots)
+    more: list[LocalMap] = list(solved.values())
+    if more:
+        place = np.concatenate([place, *(np.array(m.places, dtype=place.dtype) for m in more)])
+        owner = np.concatenate([owner, *(np.array(m.owners, dtype=owner.dtype) for m in more)])
     for leaf, local in solved.items():
-        owner[0][leaves.first_slot[leaf] : leaves.first_slot[leaf + 1]] = -1
+        owner[leaves.first_slot[leaf] : leaves.first_slot[leaf + 1]] = -1
         kinds[leaf], choices[leaf] = HARD, 0
         start[leaf], ports[leaf] = used, local.ports
-        place.append(np.array(local.places, dtype=np.int64))
-        owner.append(np.array(local.owners, dtype=np.int64))
         used += len(local.places)
     n_arcs, n_vertices, n_ends = glue.count_parts(kinds, choices)
-    more_arcs = sum(len(local.arcs) for local in solved.values())
-    more_vertices = sum(len(local.vertices) for local in solved.values())
-    more_ends = sum(len(out) for local in solved.values() for _, out in local.vertices)
+    more_arcs = sum(len(local.arcs) for local in more)
+    more_vertices = sum(len(local.vertices) for local in more)
+    more_ends = sum(len(out) for local in more for _, out in local.vertices)
+    small: type[np.signedinteger[Any]] = (
+        np.int32 if max(used, 2 * (n_arcs + more_arcs)) < LARGE else np.int64
+    )
     arrays = Arrays(
         start=start,
         ports=ports,
-        place=np.concatenate(place),
-        owner=np.concatenate(owner),
-        arcs=np.zeros((n_arcs + more_arcs, 4), dtype=np.int64),
-        leaf_of_arc=np.zeros(n_arcs + more_arcs, dtype=np.int64),
-        vertices=np.zeros((n_vertices + more_vertices, 2), dtype=np.int64),
-        out_first=np.zeros(n_vertices + more_vertices + 1, dtype=np.int64),
-        out=np.zeros(n_ends + more_ends, dtype=np.int64),
-        inward=np.full(used, -1, dtype=np.int64),
-        parent=np.arange(used),
-        mate=np.full(used, -1, dtype=np.int64),
-        following=np.full(used, -1, dtype=np.int64),
+        place=place,
+        owner=owner,
+        arcs=np.zeros((n_arcs + more_arcs, 4), dtype=small),
+        leaf_of_arc=np.zeros(n_arcs + more_arcs, dtype=small),
+        vertices=np.zeros((n_vertices + more_vertices, 2), dtype=small),
+        out_first=np.zeros(n_vertices + more_vertices + 1, dtype=small),
+        out=np.zeros(n_ends + more_ends, dtype=small),
+        inward=np.full(used, -1, dtype=small),
+        parent=np.arange(used, dtype=small),
+        mate=np.full(used, -1, dtype=small),
+        following=np.full(used, -1, dtype=small),
         sides=np.zeros((len(roots.triangles), 3, 4), dtype=np.int64),
         opposite=roots.opposite(),
     )
@@ -107,7 +119,7 @@ def glued(roots: Roots, leaves: Leaves, solved: dict[int, LocalMap]) -> Arrays:
         arrays.owner,
         arrays.opposite,
         arrays.following,
-        np.full(used, -1, dtype=np.int64),
+        np.full(used, -1, dtype=small),
         arrays.parent,
         arrays.mate,
         arrays.sides,

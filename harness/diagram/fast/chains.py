@@ -31,7 +31,7 @@ def join_arcs(arcs, mate, inward, node_of_vertex, node_of_port, parent):
     left and to the right; and ``edge_of_arc`` (a, 2): edge, and 1 if the arc runs backwards in it.
     """
     count = len(arcs)
-    edge_of_arc = np.full((count, 2), -1, np.int64)
+    edge_of_arc = np.full((count, 2), -1, arcs.dtype)
     edges = np.empty((max(count, 1), 6), np.int64)
     e = 0
     for loops in range(2):
@@ -70,7 +70,7 @@ def number_classes(parent, owner):
 
     Slots without an owner are not in use and get −1.
     """
-    number = np.empty(len(parent), np.int64)
+    number = np.empty(len(parent), parent.dtype)
     count = 0
     for s in range(len(parent)):
         if owner[s] < 0:

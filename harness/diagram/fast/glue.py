@@ -224,7 +224,7 @@ def glue_tree(
     # Corner opposite to the halved side, halves done.
     waiting = np.empty((DEEPEST + 2, 2), np.int64)
     depth = top = 0
-    one = np.empty(4, np.int64)
+    one, two = np.empty(4, np.int64), np.empty(4, np.int64)
     while True:
         token = tokens[position]
         position += 1
@@ -244,11 +244,10 @@ def glue_tree(
                 return -1, leaf
             if not _concatenate(first[0], second[0], following, previous, owner, parent, one):
                 return -1, leaf
-            new = np.empty((3, 4), np.int64)
-            new[k] = one
-            new[(k + 1) % 3] = second[1]
-            new[(k + 2) % 3] = first[2]
-            stack[top - 2] = new
+            two[:] = first[2]
+            first[k] = one
+            first[(k + 1) % 3] = second[1]
+            first[(k + 2) % 3] = two
             top -= 1
         if depth == 0:
             sides[:] = stack[0]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from harness.diagram.fast.arrays import Numbers
 from harness.diagram.fast.counting import FastDiagram
 from harness.diagram.fast.forms import U
 from harness.diagram.fast.jit import compiled
@@ -146,7 +147,7 @@ def _triangles(diagram: FastDiagram, leaf: Ints) -> Floats:
     return triangles
 
 
-def _other_owners(diagram: FastDiagram, leaf: Ints, owner: Ints) -> tuple[Ints, Ints]:
+def _other_owners(diagram: FastDiagram, leaf: Ints, owner: Ints) -> tuple[Ints, Numbers]:
     """The owners of the pieces of leaves but one of each, in CSR form."""
     arrays = diagram.arrays
     most = int(arrays.ports[leaf].max(initial=0))

@@ -16,12 +16,14 @@ from hypothesis import strategies as st
 from generators.registry import generate
 from harness.diagram import build
 from harness.diagram.counts import DOMAINS, OBJECTIVES, Domain, Objective
+from harness.diagram.fast import arrays
 from harness.diagram.fast.counting import fast_diagram
 from harness.geometry.instance import Instance
 from tests import strategies
 from tests.diagram.fast import agreement
 from tests.diagram.fast.agreement import Case, cases, disagreements, domains, shrunk
 from tests.diagram.fast.sources import SOURCES, instance
+from tests.diagram.same_map import differences
 from tests.diagram.support import SQUARE, corpus, corpus_instance, instance_of, polygon
 
 SEED = 2
@@ -94,6 +96,18 @@ def test_other_triangles_and_workers_give_the_same_counts(
     map_of = build(made, domain, objective, "fast")
     map_of.sanity_check()
     assert map_of.counts == counts[0]
+
+
+def test_numbers_of_64_bits_give_the_same_diagram(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Slots are numbered in 32 bits where these are enough: nearly always, so here they are not."""
+    made = Instance.from_generated(generate("star", 12, 7))
+    narrow = build(made, "interior", "smallest", "fast")
+    monkeypatch.setattr(arrays, "LARGE", 0)
+    wide = build(made, "interior", "smallest", "fast")
+    kinds = {fast_diagram(made, "interior", "smallest").arrays.parent.dtype.itemsize}
+    assert kinds == {8}
+    wide.sanity_check()
+    assert differences(narrow, wide) == []
 
 
 # --- the comparison itself -----------------------------------------------------------------------
