@@ -9,7 +9,7 @@ from collections import Counter
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 from harness.bench.rows import bench_row
 from harness.bench.store import Store
@@ -22,7 +22,6 @@ from harness.study.progress import Progress
 
 if TYPE_CHECKING:
     from harness.bench.benchmark import Benchmark, Case, Measured
-    from harness.study.isolate import Work
     from harness.study.outcome import Outcome
     from harness.study.schema import Record
     from harness.study.task import Task
@@ -95,7 +94,7 @@ def run_benchmark(
             with contextlib.closing(_run(benchmark, cases, settings, stop)) as results:
                 for case, task, outcome in results:
                     # The engine carries what `measure` returns and never looks into it.
-                    measured = cast("Measured | None", outcome.measurement)
+                    measured: Measured | None = outcome.measurement
                     if measured is not None:
                         found[case.name] = measured
                     row = bench_row(benchmark, case, task, outcome, measured, store.run)
@@ -147,7 +146,7 @@ def _run(
     """Run the cases in order and tell on standard error how far it is."""
     tasks = [case.task(settings.builder) for case in cases]
     work = functools.partial(benchmark.measure, repeat=settings.repeat, workers=settings.workers)
-    results = run_local(tasks, cast("Work", work), benchmark.limits, 1, stop)
+    results = run_local(tasks, work, benchmark.limits, 1, stop)
     statuses: Counter[str] = Counter()
     with (
         Progress(f"bench {benchmark.name}", len(tasks), statuses) as progress,

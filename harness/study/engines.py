@@ -22,17 +22,21 @@ from harness.errors import UserError
 from harness.study.isolate import TICK, Attempt, Work
 from harness.study.limits import Limits
 from harness.study.outcome import Outcome
-from harness.study.task import Task
+from harness.study.task import AnyTask
 
-Results = Generator[tuple[Task, Outcome]]
+Results = Generator[tuple[AnyTask, Outcome]]
 
 
 def run_local(
-    tasks: Sequence[Task], work: Work, limits: Limits, jobs: int, stop: threading.Event
-) -> Results:
+    tasks: Sequence[AnyTask],
+    work: Work[AnyTask],
+    limits: Limits,
+    jobs: int,
+    stop: threading.Event,
+) -> Results[AnyTask]:
     """Run tasks in the order given, ``jobs`` at a time, each in a process of its own."""
     waiting = iter(tasks)
-    running: list[Attempt] = []
+    running: list[Attempt[AnyTask]] = []
     with tempfile.TemporaryDirectory(prefix="avd-study-") as scratch:
         try:
             while not stop.is_set():
@@ -49,7 +53,7 @@ def run_local(
             wait([attempt.future for attempt in running])
 
 
-def _harvest(running: list[Attempt]) -> Results:
+def _harvest(running: list[Attempt[AnyTask]]) -> Results[AnyTask]:
     """Look after every attempt; take out and yield those that have ended."""
     for attempt in tuple(running):
         attempt.watch()
@@ -67,13 +71,13 @@ def check_dask() -> None:
 
 
 def run_dask(
-    tasks: Sequence[Task],
-    work: Work,
+    tasks: Sequence[AnyTask],
+    work: Work[AnyTask],
     limits: Limits,
     jobs: int,
     stop: threading.Event,
     scheduler: str | None = None,
-) -> Results:
+) -> Results[AnyTask]:
     """Run tasks on a Dask cluster: the one at ``scheduler``, or a local one of ``jobs`` threads.
 
     A Dask worker only supervises; each task still has its own process.  On a stop, tasks that
@@ -104,7 +108,7 @@ _halt = threading.Event()
 """Tells ``supervise`` to give up, where it runs in this process (the local cluster)."""
 
 
-def supervise(work: Work, task: Task, limits: Limits) -> Outcome:
+def supervise(work: Work[AnyTask], task: AnyTask, limits: Limits) -> Outcome:
     """Run one task in a process of its own and wait for it: what a Dask worker does.
 
     Raises UserError if the worker may not start processes.

@@ -22,7 +22,7 @@ import traceback
 from collections.abc import Callable, Iterator
 from multiprocessing import forkserver, resource_tracker
 from pathlib import Path
-from typing import Any
+from typing import Any, Generic
 
 import pebble
 import psutil
@@ -30,10 +30,10 @@ import psutil
 import generators
 from harness.errors import UserError
 from harness.study.limits import MIB, Limits, confine, lift_data_limit, peak_mib
-from harness.study.outcome import Measurement, Outcome
-from harness.study.task import Task
+from harness.study.outcome import Outcome
+from harness.study.task import AnyTask
 
-Work = Callable[[Task], Measurement]
+Work = Callable[[AnyTask], Any]
 """What is done for a task; must be importable in another process."""
 
 TICK = 0.1
@@ -52,14 +52,14 @@ _OUT_OF_MEMORY = re.compile(r"allocate memory|bad_alloc|out of memory", re.IGNOR
 """What C and C++ libraries (GMP, FLINT, the C++ runtime) say before they abort for memory."""
 
 
-class Attempt:
+class Attempt(Generic[AnyTask]):
     """A task being run in a process of its own.
 
     ``future`` is done when the process has ended; ``watch`` must be called every ``TICK`` until
     then.  After that ``outcome`` says how it went.
     """
 
-    def __init__(self, work: Work, task: Task, limits: Limits, scratch: Path) -> None:
+    def __init__(self, work: Work[AnyTask], task: AnyTask, limits: Limits, scratch: Path) -> None:
         """Start the process; ``scratch`` is a directory for what the task prints."""
         self.task = task
         self._limits = limits
@@ -158,7 +158,7 @@ class Attempt:
         return Outcome("error", reason, peak_mib=self._peak, detail=words)
 
 
-def run_confined(work: Work, task: Task, limits: Limits, log: str) -> Outcome:
+def run_confined(work: Work[AnyTask], task: AnyTask, limits: Limits, log: str) -> Outcome:
     """In the task's process: set up the limits and the log, do the work, tell how it went."""
     _speak_to(log)
     confine(limits)

@@ -12,11 +12,11 @@ import filecmp
 import json
 import platform
 import subprocess
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from importlib import metadata
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import psutil
 
@@ -27,7 +27,8 @@ from harness.study.schema import SCHEMA, migrate_manifest
 from harness.study.task import SEED_RULE
 
 if TYPE_CHECKING:
-    from harness.study.study_file import Study
+    from harness.study.limits import Limits
+    from harness.study.task import Keyed
 
 MANIFEST = "manifest.json"
 
@@ -69,13 +70,37 @@ def write_manifest(directory: Path, manifest: Manifest) -> None:
     replace(directory / MANIFEST, text.encode())
 
 
+class Described(Protocol):
+    """What the manifest tells of a study."""
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+
+    @property
+    def description(self) -> str:
+        """One line."""
+
+    @property
+    def base_seed(self) -> int:
+        """What all seeds of instances come from."""
+
+    @property
+    def limits(self) -> Limits:
+        """Of every task."""
+
+    @property
+    def tasks(self) -> Sequence[Keyed]:
+        """All of them, also those that have a row."""
+
+
 class RunRecord:
     """The manifest of a run under way: written when it starts and when it ends."""
 
     def __init__(
         self,
         directory: Path,
-        study: Study,
+        study: Described,
         *,
         command: str,
         engine: str,

@@ -7,10 +7,10 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING
 
 from harness.errors import UserError
-from harness.study.engines import check_dask, run_dask, run_local
+from harness.study.engines import Results, check_dask, run_dask, run_local
 from harness.study.interrupt import interruptible
 from harness.study.lock import locked
 from harness.study.manifest import RunRecord, read_manifest
@@ -31,9 +31,7 @@ from harness.study.runner import Engine, Mode, Summary, claim, log_failure, move
 from harness.study.store import ROWS
 
 if TYPE_CHECKING:
-    from harness.study.isolate import Work
     from harness.study.limits import Limits
-    from harness.study.study_file import Study
 
 
 @dataclass(frozen=True)
@@ -92,22 +90,24 @@ def run_meshes(
                 f"continue with: {resume_command} (or start anew with --fresh in place of --resume)"
             )
         write_rows(path, kept)
-        study = cast("Study", MeshStudy(chosen))  # the manifest asks for no more than it has
         jobs = jobs or default_jobs()
+        study = MeshStudy(chosen)
         record = RunRecord(directory, study, command=command, engine=engine, jobs=jobs, seeds=SEEDS)
         with interruptible() as stop:
-            work = cast("Work", measure)
-            some: Any = missing  # of a task the engines ask for its key alone
             if engine == "dask":
-                results = run_dask(some, work, LIMITS, jobs, stop, scheduler)
+                results = run_dask(missing, measure, LIMITS, jobs, stop, scheduler)
             else:
-                results = run_local(some, work, LIMITS, jobs, stop)
+                results = run_local(missing, measure, LIMITS, jobs, stop)
             added = _store(directory, results, record, statuses, len(chosen))
             return Summary(directory, len(chosen), statuses, added, stop.is_set())
 
 
 def _store(
-    directory: Path, results: Any, record: RunRecord, statuses: Counter[str], total: int
+    directory: Path,
+    results: Results[MeshTask],
+    record: RunRecord,
+    statuses: Counter[str],
+    total: int,
 ) -> int:
     """Store the results as they come; the manifest is written however it ends."""
     added = 0

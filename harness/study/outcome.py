@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from harness.diagram.counts import NODE_KINDS
 from harness.study.schema import SCHEMA, Record
@@ -71,14 +71,15 @@ class Measurement:
 class Outcome:
     """How a task ended.
 
-    ``measurement`` is there exactly if ``status`` is "ok".  ``peak_mib``: the greatest resident
+    ``measurement``: what the task's work has returned, a ``Measurement`` in studies of diagrams;
+    there exactly if ``status`` is "ok".  ``peak_mib``: the greatest resident
     memory of the task's process, if it is known.  ``detail``: a traceback or what the process
     wrote before it died, for the failure log.
     """
 
     status: Status
     message: str = ""
-    measurement: Measurement | None = None
+    measurement: Any = None
     peak_mib: float | None = None
     detail: str = ""
 

@@ -81,7 +81,7 @@ def run_study(
     scheduler: str | None = None,
     command: str = "",
     resume_command: str = "--resume",
-    work: Work = execute,
+    work: Work[Task] = execute,
 ) -> Summary:
     """Run what is left of a study and return how it stands.
 
@@ -129,7 +129,7 @@ def _run(
     directory: Path,
     rows: RowFile,
     record: RunRecord,
-    results: Results,
+    results: Results[Task],
     stop: threading.Event,
 ) -> Summary:
     """Store the results as they come; the manifest is written however it ends."""
@@ -167,12 +167,12 @@ def _put_in_order(directory: Path, study: Study, rows: Sequence[Record]) -> None
 def _results(
     engine: Engine,
     tasks: Sequence[Task],
-    work: Work,
+    work: Work[Task],
     study: Study,
     jobs: int | None,
     stop: threading.Event,
     scheduler: str | None,
-) -> Results:
+) -> Results[Task]:
     jobs = jobs or default_jobs()
     if engine == "dask":
         return run_dask(tasks, work, study.limits, jobs, stop, scheduler)

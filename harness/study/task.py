@@ -7,7 +7,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, Protocol, TypeVar
 
 from harness.diagram.counts import Domain, Objective
 
@@ -19,6 +19,17 @@ SEED_RULE = (
     "[base_seed, family, params, n, replicate]; domain, objective and builder do not enter, "
     "so they see the same instance"
 )
+
+
+class Keyed(Protocol):
+    """What can be run as a task: all that is asked of it is a name of its own, fit for a file's."""
+
+    @property
+    def key(self) -> str:
+        """Different for different tasks."""
+
+
+AnyTask = TypeVar("AnyTask", bound=Keyed)
 
 
 @dataclass(frozen=True)

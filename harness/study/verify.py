@@ -161,7 +161,7 @@ def count_again(
     builder: Choice = "auto",
     jobs: int | None = None,
     tell: Callable[[dict[str, int]], None] | None = None,
-    work: Work | None = None,
+    work: Work[Task] | None = None,
 ) -> None:
     """Count the chosen rows again, ``jobs`` at a time, and note how they agree.
 
