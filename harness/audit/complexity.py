@@ -99,9 +99,8 @@ def growth(rows: Sequence[Row]) -> list[Series]:
 
 
 CERTIFIED = "certified counts: every decision of the builder is exact"
-DOUBLED = (8, 16, 32, 64, 128, 256)
-SHORT = (8, 16, 32, 64, 128)
-INNER = (12, 16, 24, 32, 48, 64, 96)
+DOUBLED = (8, 16, 32, 64, 128, 256, 512)
+INNER = (12, 16, 24, 32, 48, 64, 96, 128, 192)
 RANDOM = ("star", "near-regular", "cavity", "convex-circle", "convex-valtr")
 LINEAR_QUOTE = (
     "if we restrict ourselves to a set of line segments forming a star-shaped polygon and also to "
@@ -140,8 +139,8 @@ CLAIMS = (
             (
                 cases.sizes(
                     {
-                        "segments": (4, 8, 16, 32, 64),
-                        "grid:generic": (4, 8, 16, 32, 64),
+                        "segments": (4, 8, 16, 32, 64, 128, 256),
+                        "grid:generic": (4, 8, 16, 32, 64, 128, 256),
                         "zigzag": DOUBLED,
                         "near-regular": DOUBLED,
                         "convex-circle": DOUBLED,
@@ -178,7 +177,10 @@ CLAIMS = (
             "each meeting point is a vertex. The counts show the constants."
         ),
         cases=cases.sizes(
-            {"grid": (6, 8, 10, 12, 16, 20), "grid:generic": (8, 12, 16, 24, 32, 48, 64, 96)},
+            {
+                "grid": (6, 8, 10, 12, 16, 20, 32, 48, 64, 96, 128),
+                "grid:generic": (8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256),
+            },
             {"grid:generic": {"variant": "generic"}},
         ),
         check=check_grid,
@@ -219,7 +221,7 @@ CLAIMS = (
                 cases.sizes({"zigzag": DOUBLED, "convex-weave": DOUBLED}),
                 1.0,
             ),
-            (cases.sizes(dict.fromkeys(RANDOM, SHORT), replicates=5), 1.0),
+            (cases.sizes(dict.fromkeys(RANDOM, DOUBLED), replicates=5), 1.0),
         ),
         check=check_linear_kernel,
         kind="growth",
