@@ -18,6 +18,7 @@ from harness.diagram.fast.prepare import prepare
 from harness.diagram.fast.ties import tie_arrays
 from harness.geometry.instance import Instance
 from harness.geometry.predicates import compare_visual_angles, orientation
+from tests.diagram.fast.agreement import Case, examined
 from tests.diagram.fast.sources import SOURCES, instance
 
 POLYGONS = ("star", "zigzag", "convex-valtr", "lattice-star", "lattice-simple", "symmetric", "far")
@@ -196,11 +197,30 @@ def _hull(points):
     return chains
 
 
-@pytest.mark.parametrize(("family", "n"), [("grid", 24), ("segments", 24), ("zigzag", 14)])
-def test_no_winner_is_sifted_out(family, n):
+def nearly_parallel(n, difference, seed=2):
+    """Segments whose directions differ by so little that their lines meet very far away."""
+    rng = random.Random(seed)
+    rows = []
+    for k in range(n):
+        x, length = rng.uniform(-1, 1), 10 ** rng.uniform(-2, 0)
+        slope = 1 + difference * rng.uniform(-1, 1)
+        rows.append([[x, 0.3 * k], [x + length, 0.3 * k + length * slope]])
+    return Instance.from_arrays("segments", rows)
+
+
+@pytest.mark.parametrize(
+    "made_here",
+    [
+        *(
+            pytest.param(Instance.from_generated(generate(family, n, 3)), id=family)
+            for family, n in (("grid", 24), ("segments", 24), ("zigzag", 14))
+        ),
+        *(pytest.param(nearly_parallel(9, d), id=f"parallel up to {d}") for d in (1e-8, 1e-11)),
+    ],
+)
+def test_no_winner_is_sifted_out(made_here):
     """The segment seen under the least angle from a point is a candidate of its triangle."""
-    rng = random.Random(5)
-    made_here = Instance.from_generated(generate(family, n, 3))
+    rng, n = random.Random(5), made_here.n
     prepared = prepare(made_here, parallels=True)
     roots = arranged_roots(prepared, 0)
     frame, weights, _, _ = roots.corners.arrays(prepared.centre, prepared.scale)
@@ -213,7 +233,9 @@ def test_no_winner_is_sifted_out(family, n):
     )
     assert number.mean() < 0.75 * n
     segments = made_here.rational_segments()
-    for t in rng.sample(range(len(roots.triangles)), 150):
+    reach = np.abs(frame[roots.triangles]).max(axis=(1, 2))
+    outermost = np.argsort(-np.where(weights[roots.triangles].all(axis=1), reach, 0)).tolist()
+    for t in rng.sample(outermost, 150) + rng.sample(outermost[: len(outermost) // 2], 150):
         shares = [Fraction(rng.randint(1, 99)) for _ in range(3)]
         corners = [homogeneous(roots, c) for c in roots.triangles[t].tolist()]
         x, y, w = (
@@ -228,3 +250,11 @@ def test_no_winner_is_sifted_out(family, n):
             order = compare_visual_angles(point, segments[best], segments[k])
             best = k if order is not None and order > 0 else best
         assert best in flat[start[t] : start[t] + number[t]]
+
+
+@pytest.mark.parametrize("difference", [1e-9, 1e-11, 1e-13])
+def test_nearly_parallel_segments_are_counted(difference):
+    case = Case(nearly_parallel(8, difference), "plane", "smallest")
+    outcome = examined(case, tolerance=10)
+    assert not outcome.differences
+    assert not outcome.handed_over
