@@ -14,6 +14,7 @@ from harness.diagram.fast.lines import Lines
 from harness.diagram.fast.prepare import Prepared
 from harness.diagram.fast.roots import Floats, Ints, double_double
 from harness.diagram.planar_map import RationalPoint
+from harness.diagram.work import Hopeless
 
 T = TypeVar("T")
 
@@ -48,7 +49,7 @@ class ArrangedCorners:
     """
 
     def __init__(self, prepared: Prepared, lines: Lines, points: Points) -> None:
-        """Raises nothing; O(points)."""
+        """Raises Hopeless if two lines meet beyond the range of doubles; O(points)."""
         self.prepared, self.lines, self.pairs = prepared, lines, points.pairs
         self._others = points.others
         first, flat = _incidences(lines, points)
@@ -212,8 +213,14 @@ def _frame_of_points(prepared: Prepared, lines: Lines, points: Points) -> Floats
 
 
 def _quotient(x: int, w: int) -> tuple[float, float]:
-    """x/w as a double-double, for w > 0."""
-    high = x / w
+    """x/w as a double-double, for w > 0.
+
+    Raises Hopeless if it is too large for one.
+    """
+    try:
+        high = x / w
+    except OverflowError:
+        raise Hopeless("two lines meet beyond the range of doubles") from None
     p, q = high.as_integer_ratio()
     return high, (x * q - p * w) / (w * q)
 

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from harness.diagram.fast.arranged import ArrangedCorners
 from harness.diagram.fast.arrangement import Arrangement, arrange
 from harness.diagram.fast.far import Far, far_corners, free_middles
+from harness.diagram.fast.forms import U
 from harness.diagram.fast.insertion import inserted
 from harness.diagram.fast.line_points import Points, points_on, within_hull
 from harness.diagram.fast.lines import Lines, lines_of
@@ -26,8 +27,6 @@ from harness.diagram.fast.roots import Floats, Ints, Roots, between, free_number
 from harness.diagram.planar_map import RationalPoint
 from harness.diagram.work import Contradiction
 from harness.geometry.predicates import orientation
-
-U = 2.0**-53
 
 
 def arranged_roots(

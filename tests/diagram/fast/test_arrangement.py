@@ -1,6 +1,7 @@
 """Root triangles from the arrangement of lines: what they are said to be, exactly."""
 
 import random
+from dataclasses import replace
 from fractions import Fraction
 from itertools import combinations, count, islice, pairwise
 
@@ -8,6 +9,7 @@ import numpy as np
 import pytest
 
 from generators.registry import generate
+from harness.diagram import build
 from harness.diagram.fast.arranged import ArrangedCorners
 from harness.diagram.fast.arrangement import arrange
 from harness.diagram.fast.boxes import sift_triangles
@@ -16,6 +18,7 @@ from harness.diagram.fast.line_points import points_on, within_hull
 from harness.diagram.fast.lines import lines_of
 from harness.diagram.fast.prepare import prepare
 from harness.diagram.fast.ties import tie_arrays
+from harness.errors import UserError
 from harness.geometry.instance import Instance
 from harness.geometry.predicates import compare_visual_angles, orientation
 from tests.diagram.fast.agreement import Case, examined
@@ -75,6 +78,50 @@ def test_points_are_in_order_and_all_there(source, index):
     assert len(set(exact)) == len(exact)
     for i, j in combinations(range(len(rows)), 2):
         assert len(set(rows[i]) & set(rows[j])) == (lines.rank[i] != lines.rank[j])
+
+
+def fine_digit(exponent):
+    """Segments of which one coordinate is very much smaller than the others."""
+    rows = [[[-(2.0**exponent), 0], [1, 1]], [[3, 1], [4, 1]], [[2, -1], [2.5, -3]]]
+    return Instance.from_arrays("segments", rows)
+
+
+def many_digits():
+    """Segments whose coordinates have a common denominator far beyond the doubles."""
+    rng = random.Random(1)
+
+    def free():
+        return Fraction(rng.randrange(10**20), rng.randrange(10**20, 10**21))
+
+    return Instance.from_arrays(
+        "segments", [[[k + free(), free()], [k + free(), 3 + free()]] for k in range(5)]
+    )
+
+
+@pytest.mark.parametrize("exponent", [-520, -1000])
+def test_fine_digits_change_nothing(exponent):
+    fine, plain = fine_digit(exponent), fine_digit(-300)
+    expected = build(plain, builder="reference").counts
+    assert replace(build(fine).counts, builder="reference") == expected
+    lines = lines_of(prepare(fine, parallels=True))
+    points = points_on(lines)
+    exact = list(placed(lines, points))
+    for i in range(len(lines.d)):
+        row = points.vertex[points.first[i] : points.first[i + 1]].tolist()
+        along = [lines.parameter_of_point(i, exact[v]) for v in row]
+        assert all(one < two for one, two in pairwise(along))
+
+
+def test_many_digits_are_counted():
+    plain = Instance.from_arrays("segments", many_digits().floats)
+    expected = build(plain, builder="reference").counts
+    assert replace(build(many_digits()).counts, builder="reference") == expected
+
+
+def test_lines_that_meet_too_far_away_are_refused():
+    rows = [[[0, 0], [1, 0]], [[0, 1], [1, f"1.{'0' * 399}1"]]]
+    with pytest.raises(UserError, match="powers of two"):
+        build(Instance.from_arrays("segments", rows))
 
 
 @pytest.mark.parametrize("source", SOURCES)
