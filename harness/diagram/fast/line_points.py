@@ -245,4 +245,5 @@ def within_hull(lines: Lines) -> Floats:
             t = room / speed
         within[:, 1] = np.where(speed > 0, np.minimum(within[:, 1], t), within[:, 1])
         within[:, 0] = np.where(speed < 0, np.maximum(within[:, 0], t), within[:, 0])
-    return within + np.array([-2.0, 2.0]) * BEYOND * size
+    within += np.array([-2.0, 2.0]) * BEYOND * size
+    return within

@@ -17,6 +17,7 @@ from harness.diagram.fast.prepare import Prepared
 from harness.diagram.fast.roots import Floats, Ints
 from harness.diagram.fast.squares import bits_of, over, squares_about
 from harness.diagram.planar_map import RationalPoint
+from harness.diagram.work import Contradiction
 
 IntPoint = tuple[int, int]
 
@@ -101,6 +102,8 @@ def lines_of(prepared: Prepared, seed: int = 0, squares: bool = True) -> Lines:
 
     The free lines form squares, each four times as large as the one before, until all crossings lie
     inside: so no face reaches from small distances to very large ones.  O(n²).
+
+    Raises Contradiction if two lines are the same.
     """
     instance, centre = prepared.instance, prepared.centre
     exact = instance.rational_segments()
@@ -127,6 +130,8 @@ def lines_of(prepared: Prepared, seed: int = 0, squares: bool = True) -> Lines:
         c.append(offset)
         p.append(point)
         segments.append([])
+    if len(set(zip(d, c, strict=True))) < len(d):
+        raise Contradiction("two lines are the same")
     # −cot of an angle in [0, π) grows with it; 0 itself is the least.
     order = sorted(set(d), key=lambda v: (v[1] != 0, Fraction(-v[0], v[1]) if v[1] else 0))
     number_of = {v: k for k, v in enumerate(order)}

@@ -118,6 +118,24 @@ def test_many_digits_are_counted():
     assert replace(build(many_digits()).counts, builder="reference") == expected
 
 
+@pytest.mark.parametrize("length", [Fraction(1), Fraction(1, 10**13), Fraction(1, 10**30)])
+def test_segments_on_one_line_are_known_however_short(length):
+    def on_line(t):
+        return [Fraction(1, 3) + t, Fraction(1, 7) + 2 * t]
+
+    half = Fraction(3, 2)
+    rows = [
+        [on_line(0), on_line(length)],
+        [on_line(half), on_line(half + length * Fraction(7, 3))],
+        [[3, 1], [4, 2]],
+        [[-3, 1], [-1, 2]],
+    ]
+    prepared = prepare(Instance.from_arrays("segments", rows), parallels=True)
+    assert prepared.lines[0] == prepared.lines[1] >= 0
+    assert prepared.lines[2] == prepared.lines[3] == -1
+    assert sorted(map(len, lines_of(prepared, squares=False).segments)) == [1, 1, 2]
+
+
 def test_lines_that_meet_too_far_away_are_refused():
     rows = [[[0, 0], [1, 0]], [[0, 1], [1, f"1.{'0' * 399}1"]]]
     with pytest.raises(UserError, match="powers of two"):
