@@ -57,18 +57,24 @@ def with_points(
     O(triangles) for each.
     """
     for p in more:
-        new = len(points)
         points.append(p)
-        result = []
-        for a, b, c in triangles:
-            if not _in_triangle(p, points[a], points[b], points[c]):
-                result.append((a, b, c))
-                continue
-            for x, y in ((a, b), (b, c), (c, a)):
-                if orientation(points[x], points[y], p) > 0:  # else p lies on that side
-                    result.append((x, y, new))
-        triangles = result
+        triangles = with_corner(points, triangles, len(points) - 1)
     return triangles
+
+
+def with_corner(
+    points: list[RationalPoint], triangles: list[tuple[int, int, int]], new: int
+) -> list[tuple[int, int, int]]:
+    """A triangulation with one more of the points as a corner, which lies inside."""
+    p, result = points[new], []
+    for a, b, c in triangles:
+        if not _in_triangle(p, points[a], points[b], points[c]):
+            result.append((a, b, c))
+            continue
+        for x, y in ((a, b), (b, c), (c, a)):
+            if orientation(points[x], points[y], p) > 0:  # else p lies on that side
+                result.append((x, y, new))
+    return result
 
 
 def _in_triangle(p: RationalPoint, a: RationalPoint, b: RationalPoint, c: RationalPoint) -> bool:
@@ -195,6 +201,9 @@ def plane_roots(
             raise Contradiction("the triangulation of the endpoints is degenerate")
         triangles.append((a, b, c) if turn_sign > 0 else (a, c, b))
     n = len(points)
+    # Points that doubles do not tell apart are no corners yet.
+    for missing in sorted(set(range(n)) - set(simplices.ravel().tolist())):
+        triangles = with_corner(points, triangles, missing)
     inner = refined(points, incident, triangles, {}, seed, frozenset((n - 3, n - 2, n - 1)))
     outermost: list[RationalPoint] = [
         (Fraction(float(x - centre[0])), Fraction(float(y - centre[1]))) for x, y in floats[-3:]

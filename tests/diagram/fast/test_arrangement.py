@@ -16,6 +16,7 @@ from harness.diagram.fast.boxes import sift_triangles
 from harness.diagram.fast.faces import arranged_interior, arranged_roots
 from harness.diagram.fast.line_points import points_on, within_hull
 from harness.diagram.fast.lines import lines_of
+from harness.diagram.fast.plane import plane_roots
 from harness.diagram.fast.prepare import prepare
 from harness.diagram.fast.ties import tie_arrays
 from harness.errors import UserError
@@ -321,5 +322,18 @@ def test_no_winner_is_sifted_out(made_here):
 def test_nearly_parallel_segments_are_counted(difference):
     case = Case(nearly_parallel(8, difference), "plane", "smallest")
     outcome = examined(case, tolerance=10)
+    assert not outcome.differences
+    assert not outcome.handed_over
+
+
+def test_endpoints_that_doubles_do_not_tell_apart_are_corners():
+    near = [[[0.25, 0.25], [1, 0.125]], [[0.25, 0.25 + 2.0**-54], [0.125, 1]], [[2, 3], [1.5, -1]]]
+    made_here = Instance.from_arrays("segments", near)
+    roots = plane_roots(made_here, 0)
+    ends = {point for segment in made_here.rational_segments() for point in segment}
+    assert ends <= {roots.corners.exact[c] for c in np.unique(roots.triangles).tolist()}
+    assert min(areas(roots)) > 0
+    roots.opposite()
+    outcome = examined(Case(made_here, "plane", "largest"), tolerance=10)
     assert not outcome.differences
     assert not outcome.handed_over
