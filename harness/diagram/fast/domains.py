@@ -90,7 +90,10 @@ def _endpoint_numbers(instance: Instance, kernel: Kernel) -> list[list[int]]:
 def _flat_points(instance: Instance, kernel: Kernel) -> dict[int, list[RationalPoint]]:
     """The polygon's vertices strictly inside sides of its kernel, in order along each side.
 
-    There are some only if several edges lie on one line: candidates are found in doubles.
+    There are some only if several edges lie on one line.  Candidates are found in doubles, with
+    differences off by less than 2e-14·size.  Such a vertex is no farther from a corner than the
+    side is long: so both products are off by less than 1e-13·size·length, or, of a side shorter
+    than 1e-10·size, are less than 1e-9·size·length themselves.
     """
     vertices, ends = instance.floats, kernel.floats
     size = float(np.ptp(vertices, axis=0).max())
@@ -109,8 +112,8 @@ def _flat_points(instance: Instance, kernel: Kernel) -> dict[int, list[RationalP
         along = offset @ d
         near = np.flatnonzero(
             (across <= 1e-9 * size * length)
-            & (along > -1e-9 * size * length)
-            & (along < length * length + 1e-9 * size * length)
+            & (along >= -1e-9 * size * length)
+            & (along <= length * length + 1e-9 * size * length)
         )
         inside = [
             p

@@ -337,3 +337,14 @@ def test_endpoints_that_doubles_do_not_tell_apart_are_corners():
     outcome = examined(Case(made_here, "plane", "largest"), tolerance=10)
     assert not outcome.differences
     assert not outcome.handed_over
+
+
+@pytest.mark.parametrize("objective", ["smallest", "largest"])
+def test_a_vertex_inside_a_side_of_the_kernel_that_doubles_do_not_see(objective):
+    half, slack = Fraction(1, 2), Fraction(1, 10**20)
+    left = [(half - slack - Fraction(y, 10), y) for y in (2, 1)]
+    right = [(half + slack + Fraction(y, 10), y) for y in (1, 2)]
+    polygon = Instance.from_arrays("polygon", [[-1, 0], [half, 0], [2, 0], *right, *left])
+    outcome = examined(Case(polygon, "kernel", objective), tolerance=10)
+    assert not outcome.differences
+    assert not outcome.handed_over
