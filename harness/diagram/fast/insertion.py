@@ -8,11 +8,10 @@ from fractions import Fraction
 import numpy as np
 
 from harness.diagram.fast.arranged import ArrangedCorners
+from harness.diagram.fast.points import Homogeneous, determinant, homogeneous
 from harness.diagram.fast.roots import Floats, Ints, free_number
 from harness.diagram.planar_map import RationalPoint
 from harness.diagram.work import Contradiction
-
-Homogeneous = tuple[Fraction, Fraction, Fraction]
 
 
 def inserted(
@@ -59,9 +58,9 @@ def _containing(
     with np.errstate(all="ignore"):
         share = areas.min(axis=1) / np.abs(areas).sum(axis=1)
     for t in np.argsort(-np.nan_to_num(share, nan=-1.0), kind="stable")[:64].tolist():
-        exact = [_homogeneous(corners, c) for c in triangles[t].tolist()]
+        exact = [homogeneous(corners, c) for c in triangles[t].tolist()]
         here = (*point, Fraction(1))
-        signs = [_determinant(here, exact[(k + 1) % 3], exact[(k + 2) % 3]) for k in range(3)]
+        signs = [determinant(here, exact[(k + 1) % 3], exact[(k + 2) % 3]) for k in range(3)]
         if min(signs) > 0:
             return t, exact, signs
         if min(signs) == 0:
@@ -77,17 +76,4 @@ def _areas(corners: ArrangedCorners, triangles: Ints, p: Floats) -> Floats:
     return np.stack(
         [x[:, k - 2] * y[:, k - 1] - x[:, k - 1] * y[:, k - 2] for k in range(3)],
         axis=1,
-    )
-
-
-def _homogeneous(corners: ArrangedCorners, corner: int) -> Homogeneous:
-    x, y = corners.exact_corner(corner)
-    return x, y, Fraction(corners.weights[corner])
-
-
-def _determinant(a: Homogeneous, b: Homogeneous, c: Homogeneous) -> Fraction:
-    return (
-        a[0] * (b[1] * c[2] - b[2] * c[1])
-        - a[1] * (b[0] * c[2] - b[2] * c[0])
-        + a[2] * (b[0] * c[1] - b[1] * c[0])
     )
