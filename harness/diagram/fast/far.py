@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cmp_to_key
 from itertools import pairwise
 
 import numpy as np
@@ -16,7 +15,7 @@ from harness.diagram.fast.arrangement import Arrangement
 from harness.diagram.fast.forms import U
 from harness.diagram.fast.line_points import TINY
 from harness.diagram.fast.lines import Lines
-from harness.diagram.fast.plane import turns_left
+from harness.diagram.fast.plane import turn_key, turns_left
 from harness.diagram.fast.roots import Floats, Ints, between, free_number
 from harness.diagram.planar_map import RationalPoint
 from harness.diagram.work import Contradiction
@@ -78,7 +77,7 @@ def _chain(
     scale = max(map(abs, start[0]))
     inside = [d for d in more if turns_left(start[0], d) and turns_left(d, stop[0])]
     found = [start]
-    for x, y in sorted(inside, key=cmp_to_key(_by_turn)):
+    for x, y in sorted(inside, key=turn_key):
         long = (x * scale, y * scale)
         found.append((long, corners.add(long, weight=0.0, special=True), True))
     chain = [start[1]]
@@ -90,11 +89,6 @@ def _chain(
             chain.append(corners.add(free, weight=0.0))
         chain.append(number)
     return chain
-
-
-def _by_turn(d: RationalPoint, e: RationalPoint) -> int:
-    """Order of directions within less than half a turn, counter-clockwise."""
-    return -1 if turns_left(d, e) else 1
 
 
 def free_middles(

@@ -212,7 +212,7 @@ def plane_roots(
     marked = parallel_directions(instance)
     parallel = [d for d, _ in marked]
     for direction in directions:
-        if not any(_same_direction(direction, d) for d in parallel):
+        if not any(same_direction(direction, d) for d in parallel):
             parallel.append(direction)
             marked.append((direction, []))
     ends = [inner.corners.add(d, weight=0.0) for d in outermost]
@@ -220,7 +220,7 @@ def plane_roots(
         a, b = n - 3 + k, n - 3 + (k + 1) % 3
         low, high = outermost[k], outermost[(k + 1) % 3]
         between_them = [(d, row) for d, row in marked if turns_left(low, d) and turns_left(d, high)]
-        between_them.sort(key=cmp_to_key(_by_turn))
+        between_them.sort(key=lambda one: turn_key(one[0]))
         chain = [ends[k]]
         for direction, row in between_them:
             if inner.corners.special[chain[-1]]:
@@ -293,18 +293,20 @@ def _ends_about(instance: Instance, origin: RationalPoint) -> Floats:
     return np.array([[_about(point, origin) for point in segment] for segment in exact])
 
 
-def _same_direction(d: RationalPoint, e: RationalPoint) -> bool:
+def same_direction(d: RationalPoint, e: RationalPoint) -> bool:
+    """Whether two vectors differ only in length."""
     return d[0] * e[1] == d[1] * e[0] and d[0] * e[0] + d[1] * e[1] > 0
-
-
-def _by_turn(x: tuple[RationalPoint, list[int]], y: tuple[RationalPoint, list[int]]) -> int:
-    """Order of directions within less than half a turn, counter-clockwise."""
-    return -1 if turns_left(x[0], y[0]) else 1
 
 
 def turns_left(d: RationalPoint, e: RationalPoint) -> bool:
     """Whether direction e lies less than half a turn to the left of direction d."""
     return d[0] * e[1] - d[1] * e[0] > 0
+
+
+@cmp_to_key
+def turn_key(d: RationalPoint, e: RationalPoint) -> int:
+    """The key to sort different directions within less than half a turn, counter-clockwise."""
+    return -1 if turns_left(d, e) else 1
 
 
 def parallel_directions(instance: Instance) -> list[tuple[RationalPoint, list[int]]]:
