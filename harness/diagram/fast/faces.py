@@ -22,11 +22,11 @@ from harness.diagram.fast.forms import U
 from harness.diagram.fast.insertion import inserted
 from harness.diagram.fast.line_points import Points, points_on, within_hull
 from harness.diagram.fast.lines import Lines, lines_of
+from harness.diagram.fast.plane import beside
 from harness.diagram.fast.prepare import Prepared
-from harness.diagram.fast.roots import Floats, Ints, Roots, between, free_number
+from harness.diagram.fast.roots import Floats, Ints, Roots
 from harness.diagram.planar_map import RationalPoint
 from harness.diagram.work import Contradiction
-from harness.geometry.predicates import orientation
 
 
 def arranged_roots(
@@ -167,8 +167,8 @@ def _along_segments(
     )
     numbers = corners.add_free(bend) + np.arange(len(pieces))
     for k in np.flatnonzero(~sure).tolist():
-        exact = [corners.exact_corner(int(c[k])) for c in (v, w, left, right)]
-        corners.replace(int(numbers[k]), _exact_bend(exact, k, seed))
+        start, stop, one, two = (corners.exact_corner(int(c[k])) for c in (v, w, left, right))
+        corners.replace(int(numbers[k]), beside(start, stop, one, two, k, seed))
     return [
         np.column_stack(row)
         for row in (
@@ -188,19 +188,6 @@ def _surely_left(a: Floats, b: Floats, c: Floats) -> np.ndarray:
     reach = np.abs(np.concatenate([b - a, c - a], axis=1)).max(axis=1)
     sure: np.ndarray = one - two > 32 * U * (np.abs(one) + np.abs(two) + size * reach)
     return sure
-
-
-def _exact_bend(exact: Sequence[RationalPoint], number: int, seed: int) -> RationalPoint:
-    """A free point beside the side vw, visible from a point on either side of it."""
-    v, w, left, right = exact
-    on_side = between(v, w, free_number(number, seed + 1))
-    t = free_number(number, seed + 2) / 64
-    for _ in range(60):
-        point = between(on_side, left, t)
-        if orientation(w, point, right) > 0 and orientation(point, v, right) > 0:
-            return point
-        t /= 16
-    raise Contradiction("no room for a free point beside a side")
 
 
 def _along_gaps(arrangement: Arrangement, far: Far, middles: Ints) -> Ints:

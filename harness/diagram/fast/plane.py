@@ -129,7 +129,10 @@ def refined(
                 region_of.append(t)
                 continue
             if side not in bend:
-                bend[side] = _bend(corners, points, a, b, middles, across[side], len(bend), seed)
+                # The first triangle at the side is this one, so it is on the left of ab.
+                left, right = (corners.exact[middles[other]] for other in across[side][:2])
+                point = beside(points[a], points[b], left, right, len(bend), seed)
+                bend[side] = corners.add(point)
             result += [(middles[t], a, bend[side]), (middles[t], bend[side], b)]
             # The free point beside the side may lie outside this triangle.
             region_of += [-1 if across[side][0] != t else t] * 2
@@ -141,26 +144,25 @@ def _strictly_in(p: RationalPoint, a: RationalPoint, b: RationalPoint, c: Ration
     return orientation(a, b, p) > 0 and orientation(b, c, p) > 0 and orientation(c, a, p) > 0
 
 
-def _bend(
-    corners: Corners,
-    points: list[RationalPoint],
-    a: int,
-    b: int,
-    middles: list[int],
-    sides: list[int],
+def beside(
+    v: RationalPoint,
+    w: RationalPoint,
+    left: RationalPoint,
+    right: RationalPoint,
     number: int,
     seed: int,
-) -> int:
-    """A free point beside the side ab, visible from the middles of both its triangles."""
-    on_side = between(points[a], points[b], free_number(number, seed + 1))
-    first, second = corners.exact[middles[sides[0]]], corners.exact[middles[sides[1]]]
+) -> RationalPoint:
+    """A free point beside vw on its left side, visible from a point on either side.
+
+    It lies on the way from an inner point of vw to ``left``, and so near to vw that the turns at
+    v and w as seen from ``right`` are still to the left.
+    """
+    on_side = between(v, w, free_number(number, seed + 1))
     t = free_number(number, seed + 2) / 64
-    if orientation(points[a], points[b], first) < 0:
-        a, b = b, a
     for _ in range(60):
-        point = between(on_side, first, t)
-        if orientation(second, point, points[a]) > 0 and orientation(second, points[b], point) > 0:
-            return corners.add(point)
+        point = between(on_side, left, t)
+        if orientation(w, point, right) > 0 and orientation(point, v, right) > 0:
+            return point
         t /= 16
     raise Contradiction("no room for a free point beside a side")
 
