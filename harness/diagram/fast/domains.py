@@ -8,7 +8,14 @@ from functools import partial
 
 import numpy as np
 
-from harness.diagram.fast.plane import LARGEST_TABLE, clipped_ears, incidences, refined, with_points
+from harness.diagram.fast.plane import (
+    LARGEST_TABLE,
+    are_coarse,
+    clipped_ears,
+    incidences,
+    refined,
+    with_points,
+)
 from harness.diagram.fast.roots import (
     Corners,
     Roots,
@@ -97,7 +104,7 @@ def _flat_points(instance: Instance, kernel: Kernel) -> dict[int, list[RationalP
     """
     vertices, ends = instance.floats, kernel.floats
     size = float(np.ptp(vertices, axis=0).max())
-    if np.spacing(np.abs(vertices).max()) > 1e-14 * size:  # rounded coordinates are too coarse
+    if are_coarse(vertices):
         x0, y0 = kernel.corners[0]
         exact = [instance.exact_vertex(k) for k in range(instance.n)]
         vertices = np.array([[float(x - x0), float(y - y0)] for x, y in exact])

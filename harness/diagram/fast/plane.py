@@ -284,11 +284,16 @@ def _about(point: RationalPoint, origin: RationalPoint) -> list[float]:
     return [float(point[0] - origin[0]), float(point[1] - origin[1])]
 
 
+def are_coarse(points: Floats) -> bool:
+    """Whether rounding moves points (k, 2) by more than 1e-14 of their spread, so that differences
+    must be taken before."""
+    return bool(np.spacing(np.abs(points).max()) > 1e-14 * np.ptp(points, axis=0).max())
+
+
 def _ends_about(instance: Instance, origin: RationalPoint) -> Floats:
     """The endpoints (n, 2, 2) about a point, with errors far below 1e-9 of their spread."""
     ends = instance.segments
-    size = np.ptp(ends.reshape(-1, 2), axis=0).max()
-    if np.spacing(np.abs(ends).max()) < 1e-14 * size:
+    if not are_coarse(ends.reshape(-1, 2)):
         about: Floats = ends - np.array([float(c) for c in origin])
         return about
     exact = instance.rational_segments()
