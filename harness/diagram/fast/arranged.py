@@ -178,11 +178,14 @@ class ArrangedCorners:
         self._settle()
         return self._frame, self._weights, self._first, self._flat
 
-    def have_ends(self) -> NDArray[np.bool_]:
-        """Whether each corner is the endpoint of a segment, (c,)."""
+    def have_ends(self, corners: Ints) -> NDArray[np.bool_]:
+        """Whether each of some corners (k,) is the endpoint of a segment."""
         self._settle()
-        found = np.zeros(self._count, dtype=bool)
-        found[np.repeat(np.arange(len(found)), np.diff(self._first))[self._flat & 1 == 1]] = True
+        first, count = self._first[corners], self._first[corners + 1] - self._first[corners]
+        row = np.repeat(np.arange(len(corners)), count)
+        entry = np.repeat(first - (np.cumsum(count) - count), count) + np.arange(len(row))
+        found = np.zeros(len(corners), dtype=bool)
+        found[row[self._flat[entry] & 1 == 1]] = True
         return found
 
     def points(self) -> Floats:
