@@ -20,7 +20,7 @@ from harness.diagram.fast.arrangement import Arrangement, arrange
 from harness.diagram.fast.far import Far, far_corners, free_middles
 from harness.diagram.fast.forms import U
 from harness.diagram.fast.insertion import inserted
-from harness.diagram.fast.line_points import Points, points_on, within_hull
+from harness.diagram.fast.line_points import TINY, Points, points_on, within_hull
 from harness.diagram.fast.lines import Lines, lines_of
 from harness.diagram.fast.plane import beside
 from harness.diagram.fast.prepare import Prepared
@@ -181,12 +181,19 @@ def _along_segments(
 
 
 def _surely_left(a: Floats, b: Floats, c: Floats) -> np.ndarray:
-    """Whether c lies to the left of ab, for points rounded to doubles."""
-    one = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1])
-    two = (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
+    """Whether c certainly lies to the left of ab, for points rounded to doubles.
+
+    Let u = 2⁻⁵³, S the greatest coordinate and R the greatest of the differences.  A difference is
+    off by 2uS and its rounding, so each product by 4uSR and 3u of it; their difference rounds once
+    more.  32u of the products and of SR is far more than all of it, and TINY than underflow.
+    """
     size = np.abs(np.concatenate([a, b, c], axis=1)).max(axis=1)
     reach = np.abs(np.concatenate([b - a, c - a], axis=1)).max(axis=1)
-    sure: np.ndarray = one - two > 32 * U * (np.abs(one) + np.abs(two) + size * reach)
+    with np.errstate(over="ignore", invalid="ignore"):  # what overflows is not certain
+        one = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1])
+        two = (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
+        bound = 32 * U * (np.abs(one) + np.abs(two) + size * reach) + TINY
+        sure: np.ndarray = one - two > bound
     return sure
 
 

@@ -162,7 +162,11 @@ def _exact_middle(
     weight: Floats,
     seed: int,
 ) -> RationalPoint:
-    """A point inside a face, as a rational combination of its corners."""
+    """A point inside a face, as a rational combination of its corners.
+
+    All its corners have positive weights, also those at infinity, and they are not all on the line
+    of one side: so the point is on no side.
+    """
     halves = arrangement.cycle[arrangement.first[face] : arrangement.first[face + 1]].tolist()
     x = y = total = Fraction(0)
     for h in halves:

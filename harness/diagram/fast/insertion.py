@@ -19,8 +19,21 @@ def inserted(
 ) -> Ints:
     """The triangles (r, 3) with every point inside one of them as a special corner.
 
-    A triangle ABC with the point p becomes nine: a small triangle of free points about p, its three
-    parts at p, and six between both.  O(triangles) for each point.
+    A triangle E₀E₁E₂ with the point p becomes nine: a small triangle of free points about p, its
+    three parts at p, and six between both.  O(triangles) for each point.
+
+    All nine are counter-clockwise.  With p = Σ σ_k E_k (indices modulo 3) the free points are
+    I_k = p + a_k (E_k + τ_k E_{k+1}), where a_k and τ_k / min(1, σ_{k+1}/σ_k) lie between 1/32 and
+    3/32.  In units of |E₀ E₁ E₂|:
+
+        |p I_k I_{k+1}| = a_k a_{k+1} (σ_k τ_k τ_{k+1} − σ_{k+1} τ_{k+1} + σ_{k+2}),
+        |E_k E_{k+1} I_{k+1}| = σ_{k+2} + a_{k+1} τ_{k+1},
+        |E_k I_{k+1} I_k| = σ_{k+2} (a_{k+1} − a_k τ_k) − a_{k+1} τ_{k+1} (σ_{k+1} + a_k τ_k).
+
+    Here σ_{k+1} τ_{k+1} ≤ 3/32 σ_{k+2}, so the first is positive, as is the second.  Further
+    τ_k τ_{k+1} ≤ (3/32)² σ_{k+2} / max σ, and max σ ≥ 1/3, since the weights of p and of corners
+    that are not at infinity are 1: so what is subtracted in the third is at most
+    σ_{k+2} (0.0088 + a_{k+1} (0.094 + 0.003)), less than σ_{k+2} a_{k+1}.
 
     Raises Contradiction if a point lies on a side.
     """
@@ -33,7 +46,6 @@ def inserted(
         inner = []
         for k in range(3):
             share = free_number(3 * number + k, seed) / 8
-            # Small against what the next corner contributes to p: so p stays inside.
             turn = min(Fraction(1), shares[(k + 1) % 3] / shares[k])
             turn *= free_number(3 * number + k, seed + 1) / 8
             parts = zip(p, exact[k], exact[(k + 1) % 3], strict=True)
