@@ -197,7 +197,8 @@ class ArrangedCorners:
 
 
 def _frame_of_points(prepared: Prepared, lines: Lines, points: Points) -> Floats:
-    """Coordinates of the points on lines in the frame, each with an error of 2⁻¹⁰⁵ of it."""
+    """Coordinates of the points on lines in the frame, each with an error of 2⁻¹⁰⁵ of it or, near
+    the least doubles, of a least double."""
     up, down = prepared.scale.numerator, prepared.scale.denominator * lines.unit
     crossing = lines.crossing
     rows = []

@@ -154,7 +154,12 @@ def _in_order(
     ids: Ints,
     classes: _Classes,
 ) -> Ints:
-    """The numbers of the points on line i, in their order; equal points are noted."""
+    """The numbers of the points on line i, in their order; equal points are noted.
+
+    Every t is enclosed in an interval.  Sorted by the lower ends, the points fall into stretches
+    where each interval begins before all earlier ones have ended; different stretches are apart,
+    and within one the exact values are sorted.
+    """
     low, high = t - error, t + error
     order = np.argsort(low, kind="stable")
     low, high = low[order], np.maximum.accumulate(high[order])

@@ -29,7 +29,7 @@ class RoundedLines:
 
     ``p`` (l, 2): points over 2^``reach``, where those of segments are at most 1.  ``d`` (l, 2):
     vectors over 2^``length`` (of each line), so that the greater part is in [1/2, 1].  ``c`` (l,):
-    over both.  On line i what is written t·2^(length − reach) here is t in :class:`Lines`.
+    over both.  A place p + t·d of :class:`Lines` has t·2^(length − reach) here instead of t.
     """
 
     d: Floats
@@ -41,7 +41,8 @@ class RoundedLines:
 
 @dataclass(frozen=True, eq=False)
 class Lines:
-    """``segments``: those on each line.  ``d``, ``c``: see above.  ``p``: a point on each line.
+    """``segments``: those on each line, none on a free one.  ``d``, ``c``: see above.  ``p``: a
+    point on each line.  A place on a line is written p + t·d.
 
     ``rank`` (l,): of the line's direction among all, by angle.  ``ends``: of every segment, in
     integers: a coordinate of the instance less ``centre``, times ``unit``.  ``orientation``: of a

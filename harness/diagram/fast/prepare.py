@@ -142,7 +142,8 @@ def _vectors(instance: Instance) -> Floats:
 
 
 def _has_neighbours(keys: Floats) -> bool:
-    """Whether two rows may be closer than 1e-7, by a sort of one combination of the columns."""
+    """Whether two rows may be closer than 1e-7, by a sort of one combination of the columns: as a
+    vector it has length 1.31, so there it changes by less than 4e-7."""
     mixed = np.sort(keys @ np.array([0.7548776662, 0.5698402910, 0.8191725134, 0.3819660113]))
     return bool((np.diff(mixed) < 4e-7).any())
 
