@@ -20,13 +20,24 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cached_property, lru_cache
+from math import lcm
 
-from flint import arb, ctx, fmpq, fmpq_poly, fmpz_mpoly, fmpz_mpoly_ctx, fmpz_poly
+from flint import (
+    arb,
+    ctx,
+    fmpq,
+    fmpq_mpoly_ctx,
+    fmpq_poly,
+    fmpz_mpoly,
+    fmpz_mpoly_ctx,
+    fmpz_poly,
+)
 
 from harness.diagram.roots import real_root_balls
 
 ONE = fmpq_poly([1])
 RING = fmpz_mpoly_ctx.get(("u", "v"), "lex")
+RATIONAL_RING = fmpq_mpoly_ctx.get(("u", "v"), "lex")
 U, V = RING.gens()
 FIRST_PRECISION = 96
 LAST_PRECISION = 1 << 20
@@ -101,6 +112,23 @@ def real_numbers(polynomial: fmpz_poly) -> list[RealNumber]:
         count = len(_real_roots(coefficients, FIRST_PRECISION))
         found += [RealNumber(irreducible, index) for index in range(count)]
     return found
+
+
+def irreducible_factors(mpoly: fmpz_mpoly) -> list[fmpz_mpoly]:
+    """Each irreducible factor of an element of :data:`RING` once, but no constants."""
+    try:
+        return [factor for factor, _ in mpoly.factor()[1]]
+    except OverflowError:
+        # To put factors in order, python-flint takes coefficients for machine integers; rationals
+        # it compares as such.
+        rational = RATIONAL_RING.from_dict({m: fmpq(c) for m, c in mpoly.to_dict().items()})
+        found = []
+        for factor, _ in rational.factor()[1]:
+            terms = factor.to_dict()
+            common = lcm(*(int(c.q) for c in terms.values()))
+            integral = RING.from_dict({m: int(c * common) for m, c in terms.items()})
+            found.append(integral.primitive()[1])
+        return found
 
 
 class Polynomial:

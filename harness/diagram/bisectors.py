@@ -27,7 +27,7 @@ from collections.abc import Iterable, Iterator
 
 from flint import arb, fmpq, fmpz_mpoly
 
-from harness.diagram.algebra import Key, NotGeneric, Point, Polynomial
+from harness.diagram.algebra import Key, NotGeneric, Point, Polynomial, irreducible_factors
 from harness.diagram.domain import Region
 from harness.diagram.fibres import intersect
 from harness.diagram.scene import Scene
@@ -81,7 +81,7 @@ def components(scene: Scene, signs: Iterable[int]) -> list[Component]:
     for i, j in itertools.combinations(range(scene.n), 2):
         line = _normal_form(scene.line[i].mpoly)
         for sign in signs:
-            for factor, _ in scene.tie(i, j, sign).mpoly.factor()[1]:
+            for factor in irreducible_factors(scene.tie(i, j, sign).mpoly):
                 form = _normal_form(factor)
                 if form == line:
                     continue

@@ -33,6 +33,23 @@ def test_the_corpus(name: str) -> None:
     assert {key: found[key] for key in case["known"]} == case["known"]
 
 
+@pytest.mark.parametrize("builder", ["fast", "reference"])
+@pytest.mark.parametrize("across", [False, True])
+def test_bisectors_of_two_lines_with_many_digits(builder: str, across: bool) -> None:
+    """Equal segments on one line, and opposite sides of a square: F is a product of lines whose
+    coefficients differ beyond machine integers only."""
+
+    def pair(x: Any, y: Any) -> Instance:
+        if across:
+            return segments(((0, 0), (x, y)), ((-y, x), (x - y, y + x)))
+        return segments(((0, 0), (x, y)), ((2 * x, 2 * y), (3 * x, 3 * y)))
+
+    fine = build(
+        pair(Fraction(2171994321321, 2**44), Fraction(17375954321987, 2**44)), builder=builder
+    )
+    assert fine.counts == build(pair(1, 2), builder=builder).counts
+
+
 def test_two_segments_whose_lines_meet_outside_both() -> None:
     counts = build(segments(((0, 0), (1, 0)), ((3, 1), (4, 3)))).counts
     assert (counts.cells, counts.edges, counts.vertices) == (4, 8, 1)

@@ -14,6 +14,7 @@ from harness.diagram.fast.lines import Lines
 from harness.diagram.fast.prepare import Prepared
 from harness.diagram.fast.roots import Floats, Ints, double_double
 from harness.diagram.planar_map import RationalPoint
+from harness.diagram.work import Hopeless
 
 T = TypeVar("T")
 
@@ -48,7 +49,7 @@ class ArrangedCorners:
     """
 
     def __init__(self, prepared: Prepared, lines: Lines, points: Points) -> None:
-        """Raises nothing; O(points)."""
+        """Raises Hopeless if two lines meet beyond the range of doubles; O(points)."""
         self.prepared, self.lines, self.pairs = prepared, lines, points.pairs
         self._others = points.others
         first, flat = _incidences(lines, points)
@@ -177,11 +178,14 @@ class ArrangedCorners:
         self._settle()
         return self._frame, self._weights, self._first, self._flat
 
-    def have_ends(self) -> NDArray[np.bool_]:
-        """Whether each corner is the endpoint of a segment, (c,)."""
+    def have_ends(self, corners: Ints) -> NDArray[np.bool_]:
+        """Whether each of some corners (k,) is the endpoint of a segment."""
         self._settle()
-        found = np.zeros(self._count, dtype=bool)
-        found[np.repeat(np.arange(len(found)), np.diff(self._first))[self._flat & 1 == 1]] = True
+        first, count = self._first[corners], self._first[corners + 1] - self._first[corners]
+        row = np.repeat(np.arange(len(corners)), count)
+        entry = np.repeat(first - (np.cumsum(count) - count), count) + np.arange(len(row))
+        found = np.zeros(len(corners), dtype=bool)
+        found[row[self._flat[entry] & 1 == 1]] = True
         return found
 
     def points(self) -> Floats:
@@ -193,7 +197,8 @@ class ArrangedCorners:
 
 
 def _frame_of_points(prepared: Prepared, lines: Lines, points: Points) -> Floats:
-    """Coordinates of the points on lines in the frame, each with an error of 2⁻¹⁰⁵ of it."""
+    """Coordinates of the points on lines in the frame, each with an error of 2⁻¹⁰⁵ of it or, near
+    the least doubles, of a least double."""
     up, down = prepared.scale.numerator, prepared.scale.denominator * lines.unit
     crossing = lines.crossing
     rows = []
@@ -212,8 +217,14 @@ def _frame_of_points(prepared: Prepared, lines: Lines, points: Points) -> Floats
 
 
 def _quotient(x: int, w: int) -> tuple[float, float]:
-    """x/w as a double-double, for w > 0."""
-    high = x / w
+    """x/w as a double-double, for w > 0.
+
+    Raises Hopeless if it is too large for one.
+    """
+    try:
+        high = x / w
+    except OverflowError:
+        raise Hopeless("two lines meet beyond the range of doubles") from None
     p, q = high.as_integer_ratio()
     return high, (x * q - p * w) / (w * q)
 

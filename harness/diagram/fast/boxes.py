@@ -26,6 +26,8 @@ from harness.diagram.fast.subdivide import grown
 TOGETHER, FEW = 16, 6
 #: A chart is sifted in so many parts, on several threads.
 PARTS = 32
+#: A box is made larger by so much, against its coordinates, for roundings.
+ROUNDING = 2.0**-48
 #: The plane's own chart reaches so far, against the size of all segments.
 NEAR = 2.0
 #: Charts: the axis that is divided by, and its sign; the plane itself comes last.
@@ -143,7 +145,14 @@ def _around(points, index, axis, sign, box, weights):
     """A quadrilateral of the plane (corners in order, and their weights) about some triangles.
 
     In the chart it is a rectangle along the longest sides of the triangles, unless that would reach
-    beyond infinity; a little larger, so that rounding does not matter.
+    beyond infinity; then along the axes, and if need be down to infinity.
+
+    It is larger than the triangles by a bound on all roundings.  With u = 2⁻⁵³ and the greatest
+    values P of |s·ux| + |t·uy| and Q of |t·ux| + |s·uy|, a coordinate p is off by at most 3uP (its
+    computation), 4uP (corners are rounded, and divided in an outer chart), 6uP (ux² + uy² is 1 up
+    to 3u), 6uP (the way back to s and t) and 2uP (that to the plane), likewise q with Q: less than
+    2⁻⁴⁸P and 2⁻⁴⁸Q.  Along the axes uy is 0, so there the rounding of t does not depend on s,
+    which may be very much larger.
     """
     ux, uy = _main_direction(points, index)
     for turn in range(2):
@@ -151,18 +160,25 @@ def _around(points, index, axis, sign, box, weights):
             ux, uy = 1.0, 0.0
         p0 = q0 = np.inf
         p1 = q1 = -np.inf
+        most_p = most_q = 0.0
         for k in index:
             for c in range(3):
                 s, t = points[k, c, 0], points[k, c, 1]
                 p, q = s * ux + t * uy, t * ux - s * uy
                 p0, p1 = min(p0, p), max(p1, p)
                 q0, q1 = min(q0, q), max(q1, q)
-        slack = 1e-6 * (p1 - p0) + 1e-12 * max(abs(p0), abs(p1))
+                most_p = max(most_p, abs(s * ux) + abs(t * uy))
+                most_q = max(most_q, abs(t * ux) + abs(s * uy))
+        slack = 1e-6 * (p1 - p0) + ROUNDING * most_p
         p0, p1 = p0 - slack, p1 + slack
-        slack = 1e-6 * (q1 - q0) + 1e-12 * max(abs(q0), abs(q1))
+        slack = 1e-6 * (q1 - q0) + ROUNDING * most_q
         q0, q1 = q0 - slack, q1 + slack
-        if sign != 0.0 and turn == 1 and q0 < 1e-9 * q1:
-            q0 = 0.0
+        if sign == 0.0:
+            least = -np.inf
+        elif turn == 0:  # a turned box must stay well away from infinity
+            least = 1e-9 * (abs(p0) + abs(p1) + abs(q0) + abs(q1))
+        else:  # t is q: the far side of the box may be at infinity, never the near one
+            least = 1e-9 * q1
         beyond = False
         for k in range(4):
             p = p0 if k in (0, 3) else p1
@@ -171,7 +187,7 @@ def _around(points, index, axis, sign, box, weights):
             weights[k] = 1.0
             if sign == 0.0:
                 box[k, 0], box[k, 2] = s, t
-            elif t > 1e-9 * (abs(p0) + abs(p1) + abs(q0) + abs(q1)):
+            elif t > least:
                 box[k, 2 * axis], box[k, 2 - 2 * axis] = 1.0 / t * sign, s / t * sign
             else:
                 beyond = True

@@ -15,6 +15,7 @@ from harness.diagram.fast.arranged import ArrangedCorners
 from harness.diagram.fast.boxes import sift_triangles
 from harness.diagram.fast.hard import LocalMap, solve
 from harness.diagram.fast.leaves import EMPTY, HARD
+from harness.diagram.fast.points import exact_point
 from harness.diagram.fast.prepare import Floats, Ints, Prepared
 from harness.diagram.fast.roots import Roots
 from harness.diagram.fast.sifting import sift_kernel, sift_regions
@@ -254,24 +255,12 @@ def exact_corners(roots: Roots, leaves: Leaves, row: int) -> list[RationalPoint]
 
     Raises Contradiction if one is at infinity.
     """
-    corners = [int(c) for c in roots.triangles[leaves.shape_roots[row]]]
     result = []
     for weights in leaves.weights(row):
-        w = sum(
-            (f * Fraction(roots.corners.weights[c]) for f, c in zip(weights, corners, strict=True)),
-            Fraction(0),
-        )
-        if w == 0:
+        point = exact_point(roots, int(leaves.shape_roots[row]), weights)
+        if point is None:
             raise Contradiction("a hard triangle at infinity")
-        x, y = (
-            sum(
-                (f * roots.corners.exact[c][axis] for f, c in zip(weights, corners, strict=True)),
-                Fraction(0),
-            )
-            / w
-            for axis in range(2)
-        )
-        result.append((x, y))
+        result.append(point)
     return result
 
 

@@ -26,6 +26,8 @@ def independence(cubics: Floats) -> float:
     return abs(float(hull_determinant(controls[0], controls[1], 0.0, 0.0))) / float(largest.prod())
 
 
+#: So far outside the triangle's box Newton's method may go.
+_BESIDE = 0.25
 #: Halvings after which the search for a zero ends.
 _HALVINGS = 24
 #: The corners, with repetition, of the ten coefficients of a cubic.
@@ -80,10 +82,11 @@ def _newton(f: Floats, g: Floats, start: Sequence[float]) -> tuple[float, float,
         if det == 0.0:
             return None
         dx, dy = (u * vy - v * uy) / det, (v * ux - u * vx) / det
-        x, y = x - dx, y - dy
-        if not (abs(x) < 4.0 and abs(y) < 4.0):
-            return None
         step = abs(dx) + abs(dy)
+        if not step < np.inf:
+            return None
+        # Where both gradients are nearly parallel a step is far too long, but right across them.
+        x, y = min(max(x - dx, -_BESIDE), 1 + _BESIDE), min(max(y - dy, -_BESIDE), 1 + _BESIDE)
         if step < 1e-15:
             break
     z = 1.0 - x - y

@@ -21,7 +21,8 @@ from harness.diagram.fast.prepare import Floats, Ints
 from harness.diagram.fast.roots import Roots
 from harness.diagram.work import Contradiction
 
-#: Middles of leaves, as shares of the side opposite to the corner, that doubles tell apart.
+#: Middles of leaves, as shares of the side opposite to the corner, that doubles tell apart: shares
+#: lie between 0 and 1 and are off by a few roundings of sums and quotients of positive numbers.
 APART = 1e-9
 
 

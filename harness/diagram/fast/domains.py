@@ -8,7 +8,14 @@ from functools import partial
 
 import numpy as np
 
-from harness.diagram.fast.plane import LARGEST_TABLE, clipped_ears, incidences, refined, with_points
+from harness.diagram.fast.plane import (
+    LARGEST_TABLE,
+    are_coarse,
+    clipped_ears,
+    incidences,
+    refined,
+    with_points,
+)
 from harness.diagram.fast.roots import (
     Corners,
     Roots,
@@ -90,11 +97,14 @@ def _endpoint_numbers(instance: Instance, kernel: Kernel) -> list[list[int]]:
 def _flat_points(instance: Instance, kernel: Kernel) -> dict[int, list[RationalPoint]]:
     """The polygon's vertices strictly inside sides of its kernel, in order along each side.
 
-    There are some only if several edges lie on one line: candidates are found in doubles.
+    There are some only if several edges lie on one line.  Candidates are found in doubles, with
+    differences off by less than 2e-14·size.  Such a vertex is no farther from a corner than the
+    side is long: so both products are off by less than 1e-13·size·length, or, of a side shorter
+    than 1e-10·size, are less than 1e-9·size·length themselves.
     """
     vertices, ends = instance.floats, kernel.floats
     size = float(np.ptp(vertices, axis=0).max())
-    if np.spacing(np.abs(vertices).max()) > 1e-14 * size:  # rounded coordinates are too coarse
+    if are_coarse(vertices):
         x0, y0 = kernel.corners[0]
         exact = [instance.exact_vertex(k) for k in range(instance.n)]
         vertices = np.array([[float(x - x0), float(y - y0)] for x, y in exact])
@@ -109,8 +119,8 @@ def _flat_points(instance: Instance, kernel: Kernel) -> dict[int, list[RationalP
         along = offset @ d
         near = np.flatnonzero(
             (across <= 1e-9 * size * length)
-            & (along > -1e-9 * size * length)
-            & (along < length * length + 1e-9 * size * length)
+            & (along >= -1e-9 * size * length)
+            & (along <= length * length + 1e-9 * size * length)
         )
         inside = [
             p

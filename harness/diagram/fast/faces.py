@@ -18,16 +18,15 @@ from numpy.typing import NDArray
 from harness.diagram.fast.arranged import ArrangedCorners
 from harness.diagram.fast.arrangement import Arrangement, arrange
 from harness.diagram.fast.far import Far, far_corners, free_middles
+from harness.diagram.fast.forms import U
 from harness.diagram.fast.insertion import inserted
-from harness.diagram.fast.line_points import Points, points_on, within_hull
+from harness.diagram.fast.line_points import TINY, Points, points_on, within_hull
 from harness.diagram.fast.lines import Lines, lines_of
+from harness.diagram.fast.plane import beside
 from harness.diagram.fast.prepare import Prepared
-from harness.diagram.fast.roots import Floats, Ints, Roots, between, free_number
+from harness.diagram.fast.roots import Floats, Ints, Roots
 from harness.diagram.planar_map import RationalPoint
 from harness.diagram.work import Contradiction
-from harness.geometry.predicates import orientation
-
-U = 2.0**-53
 
 
 def arranged_roots(
@@ -168,8 +167,8 @@ def _along_segments(
     )
     numbers = corners.add_free(bend) + np.arange(len(pieces))
     for k in np.flatnonzero(~sure).tolist():
-        exact = [corners.exact_corner(int(c[k])) for c in (v, w, left, right)]
-        corners.replace(int(numbers[k]), _exact_bend(exact, k, seed))
+        start, stop, one, two = (corners.exact_corner(int(c[k])) for c in (v, w, left, right))
+        corners.replace(int(numbers[k]), beside(start, stop, one, two, k, seed))
     return [
         np.column_stack(row)
         for row in (
@@ -182,26 +181,20 @@ def _along_segments(
 
 
 def _surely_left(a: Floats, b: Floats, c: Floats) -> np.ndarray:
-    """Whether c lies to the left of ab, for points rounded to doubles."""
-    one = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1])
-    two = (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
+    """Whether c certainly lies to the left of ab, for points rounded to doubles.
+
+    Let u = 2⁻⁵³, S the greatest coordinate and R the greatest of the differences.  A difference is
+    off by 2uS and its rounding, so each product by 4uSR and 3u of it; their difference rounds once
+    more.  32u of the products and of SR is far more than all of it, and TINY than underflow.
+    """
     size = np.abs(np.concatenate([a, b, c], axis=1)).max(axis=1)
     reach = np.abs(np.concatenate([b - a, c - a], axis=1)).max(axis=1)
-    sure: np.ndarray = one - two > 32 * U * (np.abs(one) + np.abs(two) + size * reach)
+    with np.errstate(over="ignore", invalid="ignore"):  # what overflows is not certain
+        one = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1])
+        two = (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
+        bound = 32 * U * (np.abs(one) + np.abs(two) + size * reach) + TINY
+        sure: np.ndarray = one - two > bound
     return sure
-
-
-def _exact_bend(exact: Sequence[RationalPoint], number: int, seed: int) -> RationalPoint:
-    """A free point beside the side vw, visible from a point on either side of it."""
-    v, w, left, right = exact
-    on_side = between(v, w, free_number(number, seed + 1))
-    t = free_number(number, seed + 2) / 64
-    for _ in range(60):
-        point = between(on_side, left, t)
-        if orientation(w, point, right) > 0 and orientation(point, v, right) > 0:
-            return point
-        t /= 16
-    raise Contradiction("no room for a free point beside a side")
 
 
 def _along_gaps(arrangement: Arrangement, far: Far, middles: Ints) -> Ints:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cmp_to_key
 from itertools import pairwise
 
 import numpy as np
@@ -13,13 +12,13 @@ from numpy.typing import NDArray
 
 from harness.diagram.fast.arranged import ArrangedCorners
 from harness.diagram.fast.arrangement import Arrangement
+from harness.diagram.fast.forms import U
+from harness.diagram.fast.line_points import TINY
 from harness.diagram.fast.lines import Lines
-from harness.diagram.fast.plane import turns_left
+from harness.diagram.fast.plane import turn_key, turns_left
 from harness.diagram.fast.roots import Floats, Ints, between, free_number
 from harness.diagram.planar_map import RationalPoint
 from harness.diagram.work import Contradiction
-
-U = 2.0**-53
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +77,7 @@ def _chain(
     scale = max(map(abs, start[0]))
     inside = [d for d in more if turns_left(start[0], d) and turns_left(d, stop[0])]
     found = [start]
-    for x, y in sorted(inside, key=cmp_to_key(_by_turn)):
+    for x, y in sorted(inside, key=turn_key):
         long = (x * scale, y * scale)
         found.append((long, corners.add(long, weight=0.0, special=True), True))
     chain = [start[1]]
@@ -90,11 +89,6 @@ def _chain(
             chain.append(corners.add(free, weight=0.0))
         chain.append(number)
     return chain
-
-
-def _by_turn(d: RationalPoint, e: RationalPoint) -> int:
-    """Order of directions within less than half a turn, counter-clockwise."""
-    return -1 if turns_left(d, e) else 1
 
 
 def free_middles(
@@ -135,16 +129,25 @@ def free_middles(
 def _surely_inside(
     corners: ArrangedCorners, lines: Lines, arrangement: Arrangement, middles: Floats
 ) -> NDArray[np.bool_]:
-    """Whether points, one in each face, are certainly inside it."""
-    to_frame = corners.prepared.scale / lines.unit
-    d = np.array([[float(x) for x in v] for v in lines.d])
-    c = np.array([float(Fraction(c) * to_frame) for c in lines.c])
-    half = np.arange(len(arrangement.heads))
+    """Whether points, one in each face, are certainly inside it.
+
+    With u = 2⁻⁵³ a product of the point and a line's rounded vector is off by 2u, both lines'
+    numbers by u, and their differences by 2u of all that is added: 16u is more, and TINY for
+    underflow.  What overflows is not certain.
+    """
+    rounded = lines.rounded()
+    d, half = rounded.d, np.arange(len(arrangement.heads))
+    scale = corners.prepared.scale / lines.unit
+    c = np.array(
+        [float(c * scale / (1 << k)) for c, k in zip(lines.c, rounded.length, strict=True)]
+    )
     line = arrangement.line[half >> 1]
     x, y = middles[arrangement.face].T
-    one, two, three = d[line, 0] * y, d[line, 1] * x, c[line]
-    value = np.where(half & 1, -1.0, 1.0) * (one - two - three)
-    sure = value > 16 * U * (np.abs(one) + np.abs(two) + np.abs(three))
+    with np.errstate(all="ignore"):
+        one, two, three = d[line, 0] * y, d[line, 1] * x, c[line]
+        value = np.where(half & 1, -1.0, 1.0) * (one - two - three)
+        size = np.abs(one) + np.abs(two) + np.abs(three)
+        sure = value > 16 * U * size + TINY * (1 + np.abs(x) + np.abs(y))
     inside: NDArray[np.bool_] = (
         np.bincount(arrangement.face, ~sure, minlength=arrangement.faces) == 0
     )
@@ -159,7 +162,11 @@ def _exact_middle(
     weight: Floats,
     seed: int,
 ) -> RationalPoint:
-    """A point inside a face, as a rational combination of its corners."""
+    """A point inside a face, as a rational combination of its corners.
+
+    All its corners have positive weights, also those at infinity, and they are not all on the line
+    of one side: so the point is on no side.
+    """
     halves = arrangement.cycle[arrangement.first[face] : arrangement.first[face + 1]].tolist()
     x = y = total = Fraction(0)
     for h in halves:

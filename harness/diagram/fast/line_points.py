@@ -14,11 +14,16 @@ from itertools import pairwise
 
 import numpy as np
 
-from harness.diagram.fast.lines import Lines
+from harness.diagram.fast.forms import U
+from harness.diagram.fast.lines import Lines, RoundedLines
 from harness.diagram.fast.roots import Floats, Ints
+from harness.diagram.fast.squares import over
 from harness.diagram.planar_map import RationalPoint
 
-U = 2.0**-53
+#: So far outside the convex hull, against its size, crossings are looked at, too.
+BEYOND = 1e-6
+#: More than what underflow takes from a sum of products, whose factors are less than 2³⁰⁰.
+TINY = 2.0**-700
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +67,8 @@ def points_on(
 ) -> Points:
     """The points on all lines in their order, and those of ``more`` that lie on lines.
 
-    ``within`` (l, 2): from which t on and up to which crossings are wanted on each line.
+    ``within`` (l, 2): from which t of :class:`RoundedLines` on and up to which crossings are wanted
+    on each line.
     O(l² log l) for l lines, if few points coincide nearly.
     """
     count = len(lines.d)
@@ -71,31 +77,20 @@ def points_on(
     for number, row in enumerate(other_lines):
         for i in row:
             on_line[i].append(number)
-    d, p = np.array(lines.d, dtype=object), np.array(lines.p, dtype=object)
-    dx, dy = d[:, 0].astype(np.float64), d[:, 1].astype(np.float64)
-    px, py = p[:, 0].astype(np.float64), p[:, 1].astype(np.float64)
-    c = np.array(lines.c, dtype=object).astype(np.float64)
+    rounded = lines.rounded()
     classes = _Classes()
     rows = []
     for i in range(count):
         j = np.flatnonzero(lines.rank != lines.rank[i])
-        above = c[j] + (dy[j] * px[i] - dx[j] * py[i])
-        above_error = 8 * U * (np.abs(c[j]) + np.abs(dy[j] * px[i]) + np.abs(dx[j] * py[i]))
-        below = dx[j] * dy[i] - dy[j] * dx[i]
-        below_error = 8 * U * (np.abs(dx[j] * dy[i]) + np.abs(dy[j] * dx[i]))
-        with np.errstate(all="ignore"):
-            t = above / below
-            error = 1.01 * (above_error + np.abs(t) * below_error) / (np.abs(below) - below_error)
-            known = np.abs(below) > 2 * below_error
-            error = np.where(known, error + 4 * U * np.abs(t), np.inf)
-            t = np.where(known, t, 0.0)
+        t, error = _crossings(rounded, i, j)
         if within is not None:
             wanted = ~((t + error < within[i, 0]) | (t - error > within[i, 1]))
             j, t, error = j[wanted], t[wanted], error[wanted]
         exact = [lines.parameter_of_point(i, others[k]) for k in on_line[i]]
-        near = np.array([float(x) for x in exact])
+        shift = Fraction(2) ** (rounded.length[i] - rounded.reach)
+        near = np.array([float(x * shift) for x in exact])
         t = np.concatenate([t, near])
-        error = np.concatenate([error, 4 * U * np.abs(near)])
+        error = np.concatenate([error, 4 * U * np.abs(near) + TINY])
         ids = np.concatenate(
             [
                 np.minimum(i, j) * count + np.maximum(i, j),
@@ -104,6 +99,31 @@ def points_on(
         )
         rows.append(_in_order(lines, i, j, exact, t, error, ids, classes))
     return _joined(lines, rows, classes, others)
+
+
+def _crossings(rounded: RoundedLines, i: int, j: Ints) -> tuple[Floats, Floats]:
+    """Where lines j cross line i, as t of :class:`RoundedLines`, with bounds on the errors.
+
+    Let u = 2⁻⁵³.  t is A/B with A = c_j + v_y p_x − v_x p_y and B = v_x u_y − v_y u_x, for the
+    vectors u and v of the lines i and j.  Every number is rounded once, so a product is off by 3u
+    of it, and A by at most 2u|c_j| + 5u(|v_y p_x| + |v_x p_y|), B by 4u(|v_x u_y| + |v_y u_x|); for
+    both 8u, and TINY for underflow, is enough even though the bounds are rounded.  If A and B are
+    off by α and β, A/B is off by (α + |A/B|β)/(|B| − β), with the computed A and B.  4u|t| covers
+    the division, and a sum of t and its error.
+    """
+    (ux, uy), (px, py) = rounded.d[i], rounded.p[i]
+    vx, vy = rounded.d[j].T
+    c = rounded.c[j]
+    above = c + (vy * px - vx * py)
+    above_error = 8 * U * (np.abs(c) + np.abs(vy * px) + np.abs(vx * py)) + TINY
+    below = vx * uy - vy * ux
+    below_error = 8 * U * (np.abs(vx * uy) + np.abs(vy * ux)) + TINY
+    with np.errstate(all="ignore"):
+        t = above / below
+        error = 1.01 * (above_error + np.abs(t) * below_error) / (np.abs(below) - below_error)
+        error += 4 * U * np.abs(t) + TINY
+        known = (np.abs(below) > 2 * below_error) & np.isfinite(t) & np.isfinite(error)
+    return np.where(known, t, 0.0), np.where(known, error, np.inf)
 
 
 def _other_points(
@@ -134,7 +154,12 @@ def _in_order(
     ids: Ints,
     classes: _Classes,
 ) -> Ints:
-    """The numbers of the points on line i, in their order; equal points are noted."""
+    """The numbers of the points on line i, in their order; equal points are noted.
+
+    Every t is enclosed in an interval.  Sorted by the lower ends, the points fall into stretches
+    where each interval begins before all earlier ones have ended; different stretches are apart,
+    and within one the exact values are sorted.
+    """
     low, high = t - error, t + error
     order = np.argsort(low, kind="stable")
     low, high = low[order], np.maximum.accumulate(high[order])
@@ -199,28 +224,31 @@ def _joined(
 
 
 def within_hull(lines: Lines) -> Floats:
-    """Between which t every line is near the convex hull of all segments, (l, 2).
+    """Between which t of :class:`RoundedLines` every line may be in the convex hull of all
+    segments, (l, 2).
 
-    A little is added, far more than roundings.
+    The hull is cut out by half-planes, of which it does not matter how they are found: each is
+    moved so that it contains all endpoints, and by ``BEYOND`` more.  Coordinates are at most 1 and
+    have errors of a few u = 2⁻⁵³, as has the speed of a line towards the half-plane's side, and
+    within the hull t·d is less than 3: so BEYOND is far more than all roundings.
     """
     from scipy.spatial import ConvexHull, QhullError
 
-    ends = np.array([[float(x) for x in point] for segment in lines.ends for point in segment])
-    middle, size = ends.mean(axis=0), np.ptp(ends, axis=0).max()
+    rounded = lines.rounded()
+    ends = np.array([[over(x, rounded.reach) for x in v] for row in lines.ends for v in row])
+    size = np.ptp(ends, axis=0).max()
     try:
-        normals = ConvexHull((ends - middle) / size).equations
+        normals = ConvexHull((ends - ends.mean(axis=0)) / size).equations[:, :2]
     except QhullError:  # too flat for doubles: nothing is left out
-        normals = np.zeros((0, 3))
-    d = np.array([[float(x) for x in v] for v in lines.d]) / size
-    p = (np.array([[float(x) for x in v] for v in lines.p]) - middle) / size
+        normals = np.zeros((0, 2))
+    d, p = rounded.d, rounded.p
     within = np.tile([-np.inf, np.inf], (len(d), 1))
-    for x, y, offset in normals:
+    for x, y in normals:
         speed = d[:, 0] * x + d[:, 1] * y
-        left = 1e-6 - (p[:, 0] * x + p[:, 1] * y + offset)  # what t·speed may be
+        room = BEYOND * size + (ends @ (x, y)).max() - (p @ (x, y))  # what t·speed may be
         with np.errstate(all="ignore"):
-            t = left / speed
+            t = room / speed
         within[:, 1] = np.where(speed > 0, np.minimum(within[:, 1], t), within[:, 1])
         within[:, 0] = np.where(speed < 0, np.maximum(within[:, 0], t), within[:, 0])
-    slack = 1e-6 / np.hypot(d[:, 0], d[:, 1])
-    within += np.column_stack([-slack, slack])
+    within += np.array([-2.0, 2.0]) * BEYOND * size
     return within

@@ -14,17 +14,35 @@ from math import gcd, lcm
 import numpy as np
 
 from harness.diagram.fast.prepare import Prepared
-from harness.diagram.fast.roots import Ints
-from harness.diagram.fast.squares import point_on, squares_about
+from harness.diagram.fast.roots import Floats, Ints
+from harness.diagram.fast.squares import bits_of, over, squares_about
 from harness.diagram.planar_map import RationalPoint
+from harness.diagram.work import Contradiction
 
-U = 2.0**-53
 IntPoint = tuple[int, int]
 
 
 @dataclass(frozen=True, eq=False)
+class RoundedLines:
+    """Lines in doubles, each rounded once: the integers divided by powers of two, since they may
+    have thousands of bits.
+
+    ``p`` (l, 2): points over 2^``reach``, where those of segments are at most 1.  ``d`` (l, 2):
+    vectors over 2^``length`` (of each line), so that the greater part is in [1/2, 1].  ``c`` (l,):
+    over both.  A place p + t·d of :class:`Lines` has t·2^(length − reach) here instead of t.
+    """
+
+    d: Floats
+    c: Floats
+    p: Floats
+    length: list[int]
+    reach: int
+
+
+@dataclass(frozen=True, eq=False)
 class Lines:
-    """``segments``: those on each line.  ``d``, ``c``: see above.  ``p``: a point on each line.
+    """``segments``: those on each line, none on a free one.  ``d``, ``c``: see above.  ``p``: a
+    point on each line.  A place on a line is written p + t·d.
 
     ``rank`` (l,): of the line's direction among all, by angle.  ``ends``: of every segment, in
     integers: a coordinate of the instance less ``centre``, times ``unit``.  ``orientation``: of a
@@ -62,6 +80,18 @@ class Lines:
         x, y = ((value - c) * self.unit for value, c in zip(point, self.centre, strict=True))
         return x, y
 
+    def rounded(self) -> RoundedLines:
+        """All lines in doubles."""
+        reach = bits_of(self.ends)
+        length = [max(map(int.bit_length, v)) for v in self.d]
+        return RoundedLines(
+            d=np.array([[over(x, k) for x in v] for v, k in zip(self.d, length, strict=True)]),
+            c=np.array([over(c, reach + k) for c, k in zip(self.c, length, strict=True)]),
+            p=np.array([[over(x, reach) for x in point] for point in self.p]),
+            length=length,
+            reach=reach,
+        )
+
     def contains(self, i: int, point: tuple[Fraction, Fraction]) -> bool:
         """Whether a point (in these coordinates) lies on line i."""
         (ux, uy), (x, y) = self.d[i], point
@@ -73,6 +103,8 @@ def lines_of(prepared: Prepared, seed: int = 0, squares: bool = True) -> Lines:
 
     The free lines form squares, each four times as large as the one before, until all crossings lie
     inside: so no face reaches from small distances to very large ones.  O(n²).
+
+    Raises Contradiction if two lines are the same.
     """
     instance, centre = prepared.instance, prepared.centre
     exact = instance.rational_segments()
@@ -94,11 +126,13 @@ def lines_of(prepared: Prepared, seed: int = 0, squares: bool = True) -> Lines:
         d.append((x, y))
         c.append(x * ay - y * ax)
         p.append((ax, ay))
-    for vector, offset in squares_about(d, c, ends, seed) if squares else ():
+    for vector, offset, point in list(squares_about(d, c, ends, seed)) if squares else ():
         d.append(vector)
         c.append(offset)
-        p.append(point_on(vector, offset))
+        p.append(point)
         segments.append([])
+    if len(set(zip(d, c, strict=True))) < len(d):
+        raise Contradiction("two lines are the same")
     # −cot of an angle in [0, π) grows with it; 0 itself is the least.
     order = sorted(set(d), key=lambda v: (v[1] != 0, Fraction(-v[0], v[1]) if v[1] else 0))
     number_of = {v: k for k, v in enumerate(order)}

@@ -12,6 +12,7 @@ from harness.diagram.fast.chart import Chart
 from harness.diagram.fast.counting import FastDiagram
 from harness.diagram.fast.jit import compiled
 from harness.diagram.fast.pieces import Whole, is_clear, owners, points_of_piece, whole
+from harness.diagram.fast.points import determinant, homogeneous
 from harness.diagram.fast.roots import WALL
 from harness.diagram.fast.subdivide import LEAF
 from harness.diagram.planar_map import RationalPoint
@@ -190,17 +191,14 @@ class FastLocator:
 
     def _weights(self, root: int, point: RationalPoint) -> Weights:
         """The barycentric coordinates of a point in a root (whose corners are homogeneous)."""
-        corners = self.diagram.roots.corners
-        a, b, c = (
-            (*corners.exact[k], Fraction(corners.weights[k]))
-            for k in self.diagram.roots.triangles[root].tolist()
-        )
+        roots = self.diagram.roots
+        a, b, c = (homogeneous(roots.corners, k) for k in roots.triangles[root].tolist())
         p = (*point, Fraction(1))
-        all_of_it = _determinant(a, b, c)
+        all_of_it = determinant(a, b, c)
         return [
-            _determinant(p, b, c) / all_of_it,
-            _determinant(a, p, c) / all_of_it,
-            _determinant(a, b, p) / all_of_it,
+            determinant(p, b, c) / all_of_it,
+            determinant(a, p, c) / all_of_it,
+            determinant(a, b, p) / all_of_it,
         ]
 
     def _descend(self, root: int, weights: Weights) -> tuple[int, Weights]:
@@ -225,13 +223,3 @@ def _spread() -> Iterator[Whole]:
         for k in range(1, size - 1):
             for m in range(1, size - k):
                 yield size - k - m, k, m
-
-
-def _determinant(
-    a: tuple[Fraction, ...], b: tuple[Fraction, ...], c: tuple[Fraction, ...]
-) -> Fraction:
-    return (
-        a[0] * (b[1] * c[2] - b[2] * c[1])
-        - a[1] * (b[0] * c[2] - b[2] * c[0])
-        + a[2] * (b[0] * c[1] - b[1] * c[0])
-    )

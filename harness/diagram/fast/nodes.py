@@ -52,7 +52,8 @@ def find_nodes(
     degree = np.diff(arrays.out_first)
     met = corner_nodes(roots, leaves, arrays)
     finite = np.array(roots.corners.weights)[met.corners] != 0
-    passing = finite & (met.degrees == 2) & _are_hubs(roots, met.corners)
+    passing = finite & (met.degrees == 2)
+    passing[passing] = _are_hubs(roots, met.corners[passing])
     for through in met.only(passing):
         one, two = through.ports  # an edge that passes through, without a node
         arrays.mate[one], arrays.mate[two] = two, one
@@ -75,9 +76,7 @@ def find_nodes(
 
 def _are_hubs(roots: Roots, corners: Ints) -> np.ndarray:
     """Whether special corners are neither on the boundary, nor endpoints."""
-    on_walls = np.zeros(len(roots.corners.weights), dtype=bool)
-    on_walls[list(roots.on_walls)] = True
-    hubs: np.ndarray = ~on_walls[corners] & ~roots.corners.have_ends()[corners]
+    hubs: np.ndarray = ~np.isin(corners, list(roots.on_walls)) & ~roots.corners.have_ends(corners)
     return hubs
 
 
@@ -102,9 +101,12 @@ def _are_plain_crossings(
     Four edges between the cells of two segments, both with an acute view of them (Q > 0), and no
     others whose lines pass: so both lines pass.
     """
+    plain: np.ndarray = corners.degrees == 4
+    if not plain.any():
+        return plain
     frame, _, first, flat = roots.corners.arrays(prepared.centre, prepared.scale)
-    number, count = corners.corners, np.diff(first)[corners.corners]
-    plain: np.ndarray = (corners.degrees == 4) & (count == 2)
+    number = corners.corners
+    plain &= first[number + 1] - first[number] == 2
     rows = np.flatnonzero(plain)
     lines = flat[first[number[rows]][:, None] + np.arange(2)]
     ports = corners.ports[corners.first[rows][:, None] + np.arange(4)]

@@ -57,18 +57,24 @@ def with_points(
     O(triangles) for each.
     """
     for p in more:
-        new = len(points)
         points.append(p)
-        result = []
-        for a, b, c in triangles:
-            if not _in_triangle(p, points[a], points[b], points[c]):
-                result.append((a, b, c))
-                continue
-            for x, y in ((a, b), (b, c), (c, a)):
-                if orientation(points[x], points[y], p) > 0:  # else p lies on that side
-                    result.append((x, y, new))
-        triangles = result
+        triangles = with_corner(points, triangles, len(points) - 1)
     return triangles
+
+
+def with_corner(
+    points: list[RationalPoint], triangles: list[tuple[int, int, int]], new: int
+) -> list[tuple[int, int, int]]:
+    """A triangulation with one more of the points as a corner, which lies inside."""
+    p, result = points[new], []
+    for a, b, c in triangles:
+        if not _in_triangle(p, points[a], points[b], points[c]):
+            result.append((a, b, c))
+            continue
+        for x, y in ((a, b), (b, c), (c, a)):
+            if orientation(points[x], points[y], p) > 0:  # else p lies on that side
+                result.append((x, y, new))
+    return result
 
 
 def _in_triangle(p: RationalPoint, a: RationalPoint, b: RationalPoint, c: RationalPoint) -> bool:
@@ -123,7 +129,10 @@ def refined(
                 region_of.append(t)
                 continue
             if side not in bend:
-                bend[side] = _bend(corners, points, a, b, middles, across[side], len(bend), seed)
+                # The first triangle at the side is this one, so it is on the left of ab.
+                left, right = (corners.exact[middles[other]] for other in across[side][:2])
+                point = beside(points[a], points[b], left, right, len(bend), seed)
+                bend[side] = corners.add(point)
             result += [(middles[t], a, bend[side]), (middles[t], bend[side], b)]
             # The free point beside the side may lie outside this triangle.
             region_of += [-1 if across[side][0] != t else t] * 2
@@ -135,26 +144,25 @@ def _strictly_in(p: RationalPoint, a: RationalPoint, b: RationalPoint, c: Ration
     return orientation(a, b, p) > 0 and orientation(b, c, p) > 0 and orientation(c, a, p) > 0
 
 
-def _bend(
-    corners: Corners,
-    points: list[RationalPoint],
-    a: int,
-    b: int,
-    middles: list[int],
-    sides: list[int],
+def beside(
+    v: RationalPoint,
+    w: RationalPoint,
+    left: RationalPoint,
+    right: RationalPoint,
     number: int,
     seed: int,
-) -> int:
-    """A free point beside the side ab, visible from the middles of both its triangles."""
-    on_side = between(points[a], points[b], free_number(number, seed + 1))
-    first, second = corners.exact[middles[sides[0]]], corners.exact[middles[sides[1]]]
+) -> RationalPoint:
+    """A free point beside vw on its left side, visible from a point on either side.
+
+    It lies on the way from an inner point of vw to ``left``, and so near to vw that the turns at
+    v and w as seen from ``right`` are still to the left.
+    """
+    on_side = between(v, w, free_number(number, seed + 1))
     t = free_number(number, seed + 2) / 64
-    if orientation(points[a], points[b], first) < 0:
-        a, b = b, a
     for _ in range(60):
-        point = between(on_side, first, t)
-        if orientation(second, point, points[a]) > 0 and orientation(second, points[b], point) > 0:
-            return corners.add(point)
+        point = between(on_side, left, t)
+        if orientation(w, point, right) > 0 and orientation(point, v, right) > 0:
+            return point
         t /= 16
     raise Contradiction("no room for a free point beside a side")
 
@@ -195,6 +203,9 @@ def plane_roots(
             raise Contradiction("the triangulation of the endpoints is degenerate")
         triangles.append((a, b, c) if turn_sign > 0 else (a, c, b))
     n = len(points)
+    # Points that doubles do not tell apart are no corners yet.
+    for missing in sorted(set(range(n)) - set(simplices.ravel().tolist())):
+        triangles = with_corner(points, triangles, missing)
     inner = refined(points, incident, triangles, {}, seed, frozenset((n - 3, n - 2, n - 1)))
     outermost: list[RationalPoint] = [
         (Fraction(float(x - centre[0])), Fraction(float(y - centre[1]))) for x, y in floats[-3:]
@@ -203,7 +214,7 @@ def plane_roots(
     marked = parallel_directions(instance)
     parallel = [d for d, _ in marked]
     for direction in directions:
-        if not any(_same_direction(direction, d) for d in parallel):
+        if not any(same_direction(direction, d) for d in parallel):
             parallel.append(direction)
             marked.append((direction, []))
     ends = [inner.corners.add(d, weight=0.0) for d in outermost]
@@ -211,7 +222,7 @@ def plane_roots(
         a, b = n - 3 + k, n - 3 + (k + 1) % 3
         low, high = outermost[k], outermost[(k + 1) % 3]
         between_them = [(d, row) for d, row in marked if turns_left(low, d) and turns_left(d, high)]
-        between_them.sort(key=cmp_to_key(_by_turn))
+        between_them.sort(key=lambda one: turn_key(one[0]))
         chain = [ends[k]]
         for direction, row in between_them:
             if inner.corners.special[chain[-1]]:
@@ -273,29 +284,36 @@ def _about(point: RationalPoint, origin: RationalPoint) -> list[float]:
     return [float(point[0] - origin[0]), float(point[1] - origin[1])]
 
 
+def are_coarse(points: Floats) -> bool:
+    """Whether rounding moves points (k, 2) by more than 1e-14 of their spread, so that differences
+    must be taken before."""
+    return bool(np.spacing(np.abs(points).max()) > 1e-14 * np.ptp(points, axis=0).max())
+
+
 def _ends_about(instance: Instance, origin: RationalPoint) -> Floats:
     """The endpoints (n, 2, 2) about a point, with errors far below 1e-9 of their spread."""
     ends = instance.segments
-    size = np.ptp(ends.reshape(-1, 2), axis=0).max()
-    if np.spacing(np.abs(ends).max()) < 1e-14 * size:
+    if not are_coarse(ends.reshape(-1, 2)):
         about: Floats = ends - np.array([float(c) for c in origin])
         return about
     exact = instance.rational_segments()
     return np.array([[_about(point, origin) for point in segment] for segment in exact])
 
 
-def _same_direction(d: RationalPoint, e: RationalPoint) -> bool:
+def same_direction(d: RationalPoint, e: RationalPoint) -> bool:
+    """Whether two vectors differ only in length."""
     return d[0] * e[1] == d[1] * e[0] and d[0] * e[0] + d[1] * e[1] > 0
-
-
-def _by_turn(x: tuple[RationalPoint, list[int]], y: tuple[RationalPoint, list[int]]) -> int:
-    """Order of directions within less than half a turn, counter-clockwise."""
-    return -1 if turns_left(x[0], y[0]) else 1
 
 
 def turns_left(d: RationalPoint, e: RationalPoint) -> bool:
     """Whether direction e lies less than half a turn to the left of direction d."""
     return d[0] * e[1] - d[1] * e[0] > 0
+
+
+@cmp_to_key
+def turn_key(d: RationalPoint, e: RationalPoint) -> int:
+    """The key to sort different directions within less than half a turn, counter-clockwise."""
+    return -1 if turns_left(d, e) else 1
 
 
 def parallel_directions(instance: Instance) -> list[tuple[RationalPoint, list[int]]]:

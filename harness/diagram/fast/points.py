@@ -4,8 +4,25 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from harness.diagram.fast.roots import Roots
+from harness.diagram.fast.roots import CornerTable, Roots
 from harness.diagram.planar_map import RationalPoint
+
+Homogeneous = tuple[Fraction, Fraction, Fraction]
+
+
+def homogeneous(corners: CornerTable, corner: int) -> Homogeneous:
+    """The exact coordinates x, y, w of a corner."""
+    x, y = corners.exact[corner]
+    return x, y, Fraction(corners.weights[corner])
+
+
+def determinant(a: Homogeneous, b: Homogeneous, c: Homogeneous) -> Fraction:
+    """Positive if a, b, c turn left (and no weight is negative)."""
+    return (
+        a[0] * (b[1] * c[2] - b[2] * c[1])
+        - a[1] * (b[0] * c[2] - b[2] * c[0])
+        + a[2] * (b[0] * c[1] - b[1] * c[0])
+    )
 
 
 def exact_point(roots: Roots, root: int, weights: list[Fraction]) -> RationalPoint | None:

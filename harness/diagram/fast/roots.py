@@ -76,8 +76,8 @@ class CornerTable(Protocol):
     def arrays(self, centre: RationalPoint, scale: Fraction) -> tuple[Floats, Floats, Ints, Ints]:
         """Coordinates, weights, incident segments (CSR)."""
 
-    def have_ends(self) -> NDArray[np.bool_]:
-        """Whether each is an endpoint."""
+    def have_ends(self, corners: Ints) -> NDArray[np.bool_]:
+        """Whether each of some corners (k,) is an endpoint."""
 
     def points(self) -> Floats:
         """Coordinates as doubles."""
@@ -118,9 +118,10 @@ class Corners:
         flat = [z for row in self.incident for z in row]
         return coordinates, np.array(self.weights), first, np.array(flat, dtype=np.int64)
 
-    def have_ends(self) -> NDArray[np.bool_]:
-        """Whether each corner is the endpoint of a segment, (c,)."""
-        return np.array([any(z & 1 for z in row) for row in self.incident], dtype=bool)
+    def have_ends(self, corners: Ints) -> NDArray[np.bool_]:
+        """Whether each of some corners (k,) is the endpoint of a segment."""
+        rows = (self.incident[k] for k in corners.tolist())
+        return np.array([any(z & 1 for z in row) for row in rows], dtype=bool)
 
     def points(self) -> Floats:
         """Coordinates (c, 2) as doubles; directions of corners at infinity."""

@@ -9,6 +9,7 @@ from itertools import combinations
 import numpy as np
 
 from harness.diagram.fast.build import Leaves, open_rows
+from harness.diagram.fast.plane import same_direction
 from harness.diagram.fast.prepare import Ints
 from harness.diagram.fast.roots import Roots
 from harness.diagram.planar_map import RationalPoint
@@ -41,11 +42,11 @@ def ties_at_hubs(
     directions: Mapping[RationalPoint, list[int]],
 ) -> Ties:
     """Ties at hubs, between the segments of the leaves in which they were found."""
-    corners = roots.corners
-    weights = np.array(corners.weights)
     found: Ties = set()
     if not points and not directions:
         return found
+    corners = roots.corners
+    weights = np.array(corners.weights)
     rounded = corners.points()
     for known, finite in ((points, True), (directions, False)):
         for point, ids in known.items():
@@ -57,17 +58,10 @@ def ties_at_hubs(
                 along, across = rounded @ (x, y), rounded @ (-y, x)
                 near = (weights == 0) & (along > 0) & (np.abs(across) <= 1e-9 * along)
             for corner in np.flatnonzero(near).tolist():
-                if _is_at(corners.exact[corner], point, finite):
+                exact = corners.exact[corner]
+                if exact == point if finite else same_direction(exact, point):
                     found |= set(_ties(instance, roots, corner, ids))
     return found
-
-
-def _is_at(corner: RationalPoint, point: RationalPoint, finite: bool) -> bool:
-    """Whether a corner is a point, or at infinity in a direction."""
-    if finite:
-        return corner == point
-    (x, y), (u, v) = corner, point
-    return x * v == y * u and x * u + y * v > 0
 
 
 def _ties(

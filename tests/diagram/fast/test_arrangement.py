@@ -1,6 +1,7 @@
 """Root triangles from the arrangement of lines: what they are said to be, exactly."""
 
 import random
+from dataclasses import replace
 from fractions import Fraction
 from itertools import combinations, count, islice, pairwise
 
@@ -8,16 +9,20 @@ import numpy as np
 import pytest
 
 from generators.registry import generate
+from harness.diagram import build
 from harness.diagram.fast.arranged import ArrangedCorners
 from harness.diagram.fast.arrangement import arrange
 from harness.diagram.fast.boxes import sift_triangles
 from harness.diagram.fast.faces import arranged_interior, arranged_roots
 from harness.diagram.fast.line_points import points_on, within_hull
 from harness.diagram.fast.lines import lines_of
+from harness.diagram.fast.plane import plane_roots
 from harness.diagram.fast.prepare import prepare
 from harness.diagram.fast.ties import tie_arrays
+from harness.errors import UserError
 from harness.geometry.instance import Instance
 from harness.geometry.predicates import compare_visual_angles, orientation
+from tests.diagram.fast.agreement import Case, examined
 from tests.diagram.fast.sources import SOURCES, instance
 
 POLYGONS = ("star", "zigzag", "convex-valtr", "lattice-star", "lattice-simple", "symmetric", "far")
@@ -74,6 +79,68 @@ def test_points_are_in_order_and_all_there(source, index):
     assert len(set(exact)) == len(exact)
     for i, j in combinations(range(len(rows)), 2):
         assert len(set(rows[i]) & set(rows[j])) == (lines.rank[i] != lines.rank[j])
+
+
+def fine_digit(exponent):
+    """Segments of which one coordinate is very much smaller than the others."""
+    rows = [[[-(2.0**exponent), 0], [1, 1]], [[3, 1], [4, 1]], [[2, -1], [2.5, -3]]]
+    return Instance.from_arrays("segments", rows)
+
+
+def many_digits():
+    """Segments whose coordinates have a common denominator far beyond the doubles."""
+    rng = random.Random(1)
+
+    def free():
+        return Fraction(rng.randrange(10**20), rng.randrange(10**20, 10**21))
+
+    return Instance.from_arrays(
+        "segments", [[[k + free(), free()], [k + free(), 3 + free()]] for k in range(5)]
+    )
+
+
+@pytest.mark.parametrize("exponent", [-520, -1000])
+def test_fine_digits_change_nothing(exponent):
+    fine, plain = fine_digit(exponent), fine_digit(-300)
+    expected = build(plain, builder="reference").counts
+    assert replace(build(fine).counts, builder="reference") == expected
+    lines = lines_of(prepare(fine, parallels=True))
+    points = points_on(lines)
+    exact = list(placed(lines, points))
+    for i in range(len(lines.d)):
+        row = points.vertex[points.first[i] : points.first[i + 1]].tolist()
+        along = [lines.parameter_of_point(i, exact[v]) for v in row]
+        assert all(one < two for one, two in pairwise(along))
+
+
+def test_many_digits_are_counted():
+    plain = Instance.from_arrays("segments", many_digits().floats)
+    expected = build(plain, builder="reference").counts
+    assert replace(build(many_digits()).counts, builder="reference") == expected
+
+
+@pytest.mark.parametrize("length", [Fraction(1), Fraction(1, 10**13), Fraction(1, 10**30)])
+def test_segments_on_one_line_are_known_however_short(length):
+    def on_line(t):
+        return [Fraction(1, 3) + t, Fraction(1, 7) + 2 * t]
+
+    half = Fraction(3, 2)
+    rows = [
+        [on_line(0), on_line(length)],
+        [on_line(half), on_line(half + length * Fraction(7, 3))],
+        [[3, 1], [4, 2]],
+        [[-3, 1], [-1, 2]],
+    ]
+    prepared = prepare(Instance.from_arrays("segments", rows), parallels=True)
+    assert prepared.lines[0] == prepared.lines[1] >= 0
+    assert prepared.lines[2] == prepared.lines[3] == -1
+    assert sorted(map(len, lines_of(prepared, squares=False).segments)) == [1, 1, 2]
+
+
+def test_lines_that_meet_too_far_away_are_refused():
+    rows = [[[0, 0], [1, 0]], [[0, 1], [1, f"1.{'0' * 399}1"]]]
+    with pytest.raises(UserError, match="powers of two"):
+        build(Instance.from_arrays("segments", rows))
 
 
 @pytest.mark.parametrize("source", SOURCES)
@@ -196,11 +263,30 @@ def _hull(points):
     return chains
 
 
-@pytest.mark.parametrize(("family", "n"), [("grid", 24), ("segments", 24), ("zigzag", 14)])
-def test_no_winner_is_sifted_out(family, n):
+def nearly_parallel(n, difference, seed=2):
+    """Segments whose directions differ by so little that their lines meet very far away."""
+    rng = random.Random(seed)
+    rows = []
+    for k in range(n):
+        x, length = rng.uniform(-1, 1), 10 ** rng.uniform(-2, 0)
+        slope = 1 + difference * rng.uniform(-1, 1)
+        rows.append([[x, 0.3 * k], [x + length, 0.3 * k + length * slope]])
+    return Instance.from_arrays("segments", rows)
+
+
+@pytest.mark.parametrize(
+    "made_here",
+    [
+        *(
+            pytest.param(Instance.from_generated(generate(family, n, 3)), id=family)
+            for family, n in (("grid", 24), ("segments", 24), ("zigzag", 14))
+        ),
+        *(pytest.param(nearly_parallel(9, d), id=f"parallel up to {d}") for d in (1e-8, 1e-11)),
+    ],
+)
+def test_no_winner_is_sifted_out(made_here):
     """The segment seen under the least angle from a point is a candidate of its triangle."""
-    rng = random.Random(5)
-    made_here = Instance.from_generated(generate(family, n, 3))
+    rng, n = random.Random(5), made_here.n
     prepared = prepare(made_here, parallels=True)
     roots = arranged_roots(prepared, 0)
     frame, weights, _, _ = roots.corners.arrays(prepared.centre, prepared.scale)
@@ -213,7 +299,9 @@ def test_no_winner_is_sifted_out(family, n):
     )
     assert number.mean() < 0.75 * n
     segments = made_here.rational_segments()
-    for t in rng.sample(range(len(roots.triangles)), 150):
+    reach = np.abs(frame[roots.triangles]).max(axis=(1, 2))
+    outermost = np.argsort(-np.where(weights[roots.triangles].all(axis=1), reach, 0)).tolist()
+    for t in rng.sample(outermost, 150) + rng.sample(outermost[: len(outermost) // 2], 150):
         shares = [Fraction(rng.randint(1, 99)) for _ in range(3)]
         corners = [homogeneous(roots, c) for c in roots.triangles[t].tolist()]
         x, y, w = (
@@ -228,3 +316,35 @@ def test_no_winner_is_sifted_out(family, n):
             order = compare_visual_angles(point, segments[best], segments[k])
             best = k if order is not None and order > 0 else best
         assert best in flat[start[t] : start[t] + number[t]]
+
+
+@pytest.mark.parametrize("difference", [1e-9, 1e-11, 1e-13])
+def test_nearly_parallel_segments_are_counted(difference):
+    case = Case(nearly_parallel(8, difference), "plane", "smallest")
+    outcome = examined(case, tolerance=10)
+    assert not outcome.differences
+    assert not outcome.handed_over
+
+
+def test_endpoints_that_doubles_do_not_tell_apart_are_corners():
+    near = [[[0.25, 0.25], [1, 0.125]], [[0.25, 0.25 + 2.0**-54], [0.125, 1]], [[2, 3], [1.5, -1]]]
+    made_here = Instance.from_arrays("segments", near)
+    roots = plane_roots(made_here, 0)
+    ends = {point for segment in made_here.rational_segments() for point in segment}
+    assert ends <= {roots.corners.exact[c] for c in np.unique(roots.triangles).tolist()}
+    assert min(areas(roots)) > 0
+    roots.opposite()
+    outcome = examined(Case(made_here, "plane", "largest"), tolerance=10)
+    assert not outcome.differences
+    assert not outcome.handed_over
+
+
+@pytest.mark.parametrize("objective", ["smallest", "largest"])
+def test_a_vertex_inside_a_side_of_the_kernel_that_doubles_do_not_see(objective):
+    half, slack = Fraction(1, 2), Fraction(1, 10**20)
+    left = [(half - slack - Fraction(y, 10), y) for y in (2, 1)]
+    right = [(half + slack + Fraction(y, 10), y) for y in (1, 2)]
+    polygon = Instance.from_arrays("polygon", [[-1, 0], [half, 0], [2, 0], *right, *left])
+    outcome = examined(Case(polygon, "kernel", objective), tolerance=10)
+    assert not outcome.differences
+    assert not outcome.handed_over

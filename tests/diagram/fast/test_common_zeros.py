@@ -19,6 +19,17 @@ NEAR_CORNER = np.array(
 ).reshape(2, 10)
 
 
+# Bernstein coefficients whose gradients are nearly parallel but very close to a side.
+ALONG_SIDE = np.array(
+    [
+        *(6.43639576e-13, -2.06884126e-13, 0.935361736, 3.60131669e-13, 4.11320988e-4),
+        *(7.66237685e-14, 4.11320962e-4, 2.56689739e-2, 2.56689735e-2, 4.11320975e-4),
+        *(0, 4.01960020e-21, -0.885521255, 1.78648901e-21, -2.17099035e-4),
+        *(3.12635575e-21, -2.17099028e-4, -1.78483278e-2, -1.78483276e-2, -2.17099032e-4),
+    ]
+).reshape(2, 10)
+
+
 def residues(cubics, weights):
     out = np.zeros(3)
     for cubic in cubics:
@@ -31,6 +42,13 @@ def test_a_zero_beside_one_outside_that_attracts():
     assert found is not None
     assert min(found) > 0
     assert max(residues(NEAR_CORNER, found)) < 1e-12
+
+
+def test_a_zero_beside_a_side_to_which_gradients_lead_but_not_along_it():
+    found = common_zero(*ALONG_SIDE, (2e7, 0.22))
+    assert found is not None
+    assert min(found) > 0
+    assert max(residues(ALONG_SIDE, found)) < 1e-24
 
 
 @settings(max_examples=60, deadline=None)
