@@ -21,6 +21,7 @@ from harness.cli.main import VERBS, build_parser, main
 from harness.diagram.counts import Counts
 from harness.geometry.formats import parse_instance
 from harness.geometry.validation import validate
+from harness.study import load
 
 ROOT = Path(__file__).resolve().parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -223,6 +224,30 @@ def test_the_picture_in_the_readme_is_what_its_command_draws(tmp_path, monkeypat
     captions = (tmp_path / path).with_name("captions.json").read_text(encoding="utf-8")
     (cells, vertices) = re.findall(r"woven into (\d+) cells with (\d+) vertices", README)[0]
     assert re.search(rf"{cells} cells, \d+ edges and {vertices} vertices \(certified\)", captions)
+
+
+def test_the_numbers_of_the_answer_are_those_of_the_rows() -> None:
+    rows = load(ROOT / "results" / "conjecture").to_dict("records")
+    assert {(row["status"], row["certified"]) for row in rows} == {("ok", True)}
+
+    def vertices(n: int, domain: str, *families: str) -> list[int]:
+        return [
+            row["vertices"]
+            for row in rows
+            if (row["n"], row["domain"]) == (n, domain) and row["family"] in families
+        ]
+
+    random = ("star", "star-fat", "near-regular", "convex-circle", "convex-valtr")
+    few = vertices(4096, "kernel", *random)
+    said = {
+        r"([\d,]+) for the zigzag of 2,048 edges": max(vertices(2048, "kernel", "zigzag")),
+        r"([\d,]+) for the convex weave": max(vertices(2048, "kernel", "convex-weave")),
+        r"of ([\d,]+) random polygons of\s+4,096 edges": len(few),
+        r"none has more than ([\d,]+) vertices in its kernel": max(few),
+        r"([\d,]+) vertices in its interior": max(vertices(2048, "interior", "star")),
+    }
+    for words, number in said.items():
+        assert re.findall(words, README) == [f"{number:,}"], words
 
 
 def test_the_python_in_the_readme_runs() -> None:
