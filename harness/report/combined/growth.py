@@ -79,7 +79,7 @@ def _sentences(
             best = part.iloc[0]
             yield (
                 f"In the {domain}, a polygon of the family {best['family']} with n = {best['n']} "
-                f"edges has {best['vertices']} vertices, certified: {number(best['per_edge'])} for "
+                f"edges has {best['vertices']:,} vertices, certified: {number(best['per_edge'])} for "
                 f"each edge, {number(best['per_square'])}·n². No bound of c·n vertices holds with "
                 f"c below {number(best['per_edge'])}."
             )
