@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 from harness.analysis import Key
 
-_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_RAISED = str.maketrans("-−.0123456789", "⁻⁻·⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def curve_labels(keys: Sequence[Key]) -> list[str]:
@@ -60,9 +60,13 @@ def number(value: float | None, digits: int = 3) -> str:
     text = f"{value:.{digits}g}"
     if "e" in text:  # too small, or too large, for a table of decimals
         mantissa, exponent = text.split("e")
-        raised = str(int(exponent)).translate(_RAISED)
-        return f"{mantissa}·10{raised}".replace("-", "−")
+        return f"{mantissa}·10{raised(str(int(exponent)))}".replace("-", "−")
     return text.replace("-", "−")
+
+
+def raised(text: str) -> str:
+    """A number as an exponent: ⁻³·⁹."""
+    return text.translate(_RAISED)
 
 
 def bracket(low: float | None, high: float | None, digits: int = 3) -> str:

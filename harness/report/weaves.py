@@ -109,7 +109,8 @@ def _summary(table: pd.DataFrame) -> str:
     if found.get("symmetric", 0):
         sentence += f", {found['symmetric']} are as predicted for a rounded symmetric polygon"
     if found.get("noise", 0):
-        sentence += f", {found['noise']} differ because the noise was too large for them"
+        verb, them = ("differs", "it") if found["noise"] == 1 else ("differ", "them")
+        sentence += f", {found['noise']} {verb} because the noise was too large for {them}"
     wrong = int(found.get("unexplained", 0))
     verb = "contradict" if wrong > 1 else "contradicts"
     return f"{sentence}; {wrong or 'none'} {verb} the prediction."

@@ -79,9 +79,9 @@ def _sentences(
             best = part.iloc[0]
             yield (
                 f"In the {domain}, a polygon of the family {best['family']} with n = {best['n']} "
-                f"edges has {best['vertices']:,} vertices, certified: {number(best['per_edge'])} for "
-                f"each edge, {number(best['per_square'])}·n². No bound of c·n vertices holds with "
-                f"c below {number(best['per_edge'])}."
+                f"edges has {best['vertices']:,} vertices, certified: {number(best['per_edge'])} "
+                f"for each edge, {number(best['per_square'])}·n². No bound of c·n vertices holds "
+                f"with c below {number(best['per_edge'])}."
             )
     if faster:
         yield (
@@ -97,8 +97,8 @@ def _sentences(
     ]
     if random:
         yield (
-            f"The other {plural(len(random), 'curve')} do not show it at these sizes; a study "
-            "on random polygons in kernels alone would have confirmed the expectation."
+            f"{plural(len(random), 'other curve')}, controls apart, do not show it at these sizes; "
+            "a study on random polygons in kernels alone would have confirmed the expectation."
         )
     yield f"{study.name}: {_tasks(study)} {control_sentence(study.groups)}"
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from harness.report.build import read
 from harness.report.combined.parts import Chapter, Workshop, absent
-from harness.report.labels import number
+from harness.report.labels import number, raised
 from harness.report.parts import Figure, Part
 from harness.report.plates.comparisons import SMOOTHED, WEAVE
 from harness.report.plates.studies import first_of
@@ -45,7 +45,7 @@ def noise_chapter(shop: Workshop) -> Chapter:
     name, part = found
     views = part.shown["views"]
     sentences = [f"{view['title']}: {view['sentences'][0]}" for view in views]
-    powers = [f"n^−{number(view['exponent'].value, 2)} ({view['family']})" for view in views]
+    powers = [f"n⁻{raised(number(view['exponent'].value, 2))} ({view['family']})" for view in views]
     answer = f"About {' and '.join(powers)}"
     return Chapter(*NOISE, answer, "slower", sentences, part=part, sources=[name])
 

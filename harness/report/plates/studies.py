@@ -42,19 +42,22 @@ def rows_of(results: Path, names: tuple[str, ...]) -> tuple[Path, pd.DataFrame]:
 def growth_table(results: Path) -> pd.DataFrame:
     """For each curve and size the greatest number of vertices: columns curve, n, vertices."""
     _, rows = rows_of(results, GROWTH)
-    kinds = rows[["family", "params"]].drop_duplicates()["family"].tolist()
-    names = [
-        _curve_name(str(family), str(params), kinds.count(family) > 1)
-        for family, params in zip(rows["family"], rows["params"], strict=True)
-    ]
-    grouped = rows.assign(curve=names, n=rows["segments"]).groupby(["curve", "n"], sort=True)
+    curves = rows[["family", "params"]].drop_duplicates()
+    names = {
+        (family, params): _curve_name(str(family), json.loads(params), variants)
+        for family, of_family in curves.groupby("family")
+        for variants in [[json.loads(params) for params in of_family["params"]]]
+        for params in of_family["params"]
+    }
+    named = [names[key] for key in zip(rows["family"], rows["params"], strict=True)]
+    grouped = rows.assign(curve=named, n=rows["segments"]).groupby(["curve", "n"], sort=True)
     return grouped["vertices"].max().reset_index()
 
 
-def _curve_name(family: str, params: str, is_one_of_several: bool) -> str:
-    if not is_one_of_several:
-        return family
-    return f"{family} {', '.join(f'{k} {plain(v)}' for k, v in json.loads(params).items())}"
+def _curve_name(family: str, params: dict[str, Any], variants: list[dict[str, Any]]) -> str:
+    """The family, and the parameters in which its curves differ."""
+    differing = [k for k, v in params.items() if any(other.get(k) != v for other in variants)]
+    return ", ".join([family, *(f"{k} {plain(params[k])}" for k in differing)])
 
 
 def draw_growth(figure: Figure, results: Path) -> str:
