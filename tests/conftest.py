@@ -1,6 +1,11 @@
-"""Hypothesis profiles: the same examples on every run where ``CI`` is set, new ones elsewhere."""
+"""Hypothesis profiles: the same examples on every run where ``CI`` is set, new ones elsewhere.
+
+And signals: a shell starts what runs in its background with SIGINT ignored, and programs inherit
+that; those that the tests interrupt would then run on.
+"""
 
 import os
+import signal
 
 from hypothesis import HealthCheck, settings
 
@@ -10,3 +15,6 @@ settings.register_profile(
 )
 settings.register_profile("dev", deadline=None)
 settings.load_profile("ci" if os.environ.get("CI") else "dev")
+
+if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
