@@ -117,7 +117,8 @@ CLAIMS = (
         ),
         reading=(
             "Under the same hypotheses: if the lines of two segments meet outside of both, each "
-            "of the two regions consists of at least two cells."
+            "of the two regions consists of at least two cells. (The proof asks only that they are "
+            "not parallel, but its extensions do not cross unless the lines meet there.)"
         ),
         failure="such a segment that owns a single cell; one instance refutes the proof",
         arithmetic=ARITHMETIC + "; where lines meet, by rational arithmetic",

@@ -136,12 +136,25 @@ def _sentences(found: Collapse) -> Iterator[str]:
         f"All these intervals lie between {number(low)} and {number(high)}. Of the whole exponents "
         f"{', '.join(f'{a:g}' for a in HYPOTHESES)} that rules out {', '.join(outside) or 'none'}"
         f" on these sizes and leaves {', '.join(inside) or 'none'}."
+        f"{trend([estimate for _, _, estimate in found.neighbours])}"
     )
     if found.transition_exponent is not None:
         yield (
             "The noise that leaves half of the vertices falls like n⁻ᵃ with a = "
             f"{_shown(found.transition_exponent)}."
         )
+
+
+def trend(estimates: Sequence[Estimate]) -> str:
+    """That exponents of ever larger sizes go one way, beyond their intervals, if they do."""
+    steps = np.diff([estimate.value for estimate in estimates])
+    if len(steps) < 2 or not (np.all(steps > 0) or np.all(steps < 0)):
+        return ""
+    first, last = estimates[0], estimates[-1]
+    if first.low <= last.high and last.low <= first.high:
+        return ""
+    way = "rise" if steps[0] > 0 else "fall"
+    return f" But they {way} with n throughout: what a is for large n these sizes do not decide."
 
 
 def _transition_table(found: Collapse) -> Table:

@@ -107,10 +107,11 @@ def _summary(table: pd.DataFrame) -> str:
     sentence = f"Of {plural(len(table), 'certified count')}"
     sentence += f", {found.get('as predicted', 0)} are exactly as predicted"
     if found.get("symmetric", 0):
-        sentence += f", {found['symmetric']} are as predicted for a rounded symmetric polygon"
+        sentence += f", {found['symmetric']} are in the range predicted for a rounded symmetric "
+        sentence += "polygon"
     if found.get("noise", 0):
-        verb, them = ("differs", "it") if found["noise"] == 1 else ("differ", "them")
-        sentence += f", {found['noise']} {verb} because the noise was too large for {them}"
+        verb, they = ("differs", "it is") if found["noise"] == 1 else ("differ", "they are")
+        sentence += f", {found['noise']} {verb}, with more noise than {they} estimated to bear"
     wrong = int(found.get("unexplained", 0))
     verb = "contradict" if wrong > 1 else "contradicts"
     return f"{sentence}; {wrong or 'none'} {verb} the prediction."
@@ -134,8 +135,8 @@ def _findings_table(table: pd.DataFrame) -> Table:
 def _largest_table(generic: pd.DataFrame) -> Table:
     """The largest n of every shape."""
     last = generic.sort_values("n").groupby(["family", "shape"], sort=True).tail(1)
-    head = ["family", "τ or δ", "n", "ν", "passings", "vertices", "predicted", "÷ n²"]
-    head += ["limit", "cells", "predicted", "finding"]
+    head = ["family", "τ or δ", "n", "ν", "passings", "vertices", "predicted", "vertices / n²"]
+    head += ["its limit", "cells", "predicted", "finding"]
     body = []
     for row in last.sort_values(["family", "shape"]).to_dict("records"):
         zigzag = row["family"] == "zigzag"

@@ -150,6 +150,8 @@ def test_answers_come_from_the_rows(results: Path, files: dict[str, str]) -> Non
     counted = stored[(stored["status"] == "ok") & (stored["domain"] == "kernel")]
     assert best["per_edge"] == pytest.approx((counted["vertices"] / counted["segments"]).max())
     assert f"n = {best['n']} edges has {best['vertices']:,} vertices, certified" in said
+    bound, *_ = re.findall(r"In the kernel, .*? with c below ([\d,.]*\d)", said)
+    assert best["per_edge"] - 0.1 < float(bound.replace(",", "")) <= best["per_edge"]
     assert "fails on 2 of 5" in said
     assert "segment <1> is whole" in said
     assert "1 of 2 readings fail" in said

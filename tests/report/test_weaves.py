@@ -9,10 +9,12 @@ import pandas as pd
 import pytest
 
 from harness.analysis import analyse_group, smoothed, split
+from harness.analysis.smoothed import Estimate
 from harness.analysis.weave import predict
 from harness.analysis.weave_rows import SHAPES
 from harness.report import weaves, write_report
 from harness.report.parts import Part
+from harness.report.smoothed import trend
 from harness.report.weave_picture import ideal
 from tests.analysis.frames import rows
 from tests.analysis.weaves import corners, visual_angles
@@ -94,12 +96,24 @@ def test_a_planted_scaling_is_found(exponent) -> None:
     assert any(ruled_out[exponent] in sentence for sentence in view["sentences"])
 
 
+def test_exponents_that_lean_one_way_are_called_undecided() -> None:
+    def said(*exponents: float, width: float = 0.01) -> str:
+        return trend([Estimate(a, a - width, a + width) for a in exponents])
+
+    assert "rise with n throughout" in said(3.7, 3.8, 3.9)
+    assert "fall with n throughout" in said(3.2, 3.1, 3.0)
+    assert not said(3.1, 2.9, 3.0)
+    assert not said(3.1, 3.2)
+    assert not said(3.7, 3.8, 3.9, width=0.1)
+
+
 def test_the_page_shows_both_and_loads_nothing(tmp_path) -> None:
     frame = pd.concat([tilted("convex-weave"), noisy(3.0)], ignore_index=True)
     directory = store(tmp_path / "study", frame)
     page = write_report(directory).read_text(encoding="utf-8")
     for word in ('<section id="weave">', '<section id="smoothed">', "the derivation in full"):
         assert word in page
+    assert page.index('<section id="weave">') < page.index('<section id="verdicts">')
     assert "src=" not in page
     assert (directory / "data" / "weaves.csv").read_text().count("\n") == len(frame) + 1
     for name in ("weave-convex-weave", "weave-ideal", "smoothed-zigzag-0.5"):

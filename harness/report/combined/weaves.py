@@ -26,7 +26,10 @@ def constant_chapter(shop: Workshop) -> Chapter:
         return absent(*CONSTANT, WEAVE[:1])
     name, part = found
     wrong = int(part.shown["unexplained"])
-    limit = "For zigzag stars of tilt τ the prediction tends to (n²/2)(1 − 2τ/π), else to n²/2."
+    limit = (
+        "For large n it is about (n²/2)(1 − 2τ/π) vertices for zigzag stars of tilt τ, and n²/2 "
+        "for convex weaves."
+    )
     return Chapter(
         *CONSTANT,
         f"{wrong} counts contradict the prediction" if wrong else "As derived: of order n²",
@@ -46,7 +49,7 @@ def noise_chapter(shop: Workshop) -> Chapter:
     views = part.shown["views"]
     sentences = [f"{view['title']}: {view['sentences'][0]}" for view in views]
     powers = [f"n⁻{raised(number(view['exponent'].value, 2))} ({view['family']})" for view in views]
-    answer = f"About {' and '.join(powers)}"
+    answer = f"At these sizes about {' and '.join(powers)}"
     return Chapter(*NOISE, answer, "slower", sentences, part=part, sources=[name])
 
 
