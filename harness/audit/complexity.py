@@ -116,7 +116,9 @@ LINEAR_LIMITS = (
     "refutes only this threshold, no asymptotic statement. Against linear growth speaks every "
     "family below whose certified counts fit n²: the number of vertices per n² is steady, and the "
     "number per edge (vertices/n) grows in proportion to n. Other families may well be linear or "
-    "less; the claim is about all polygons. No finite list of counts is a proof about all n."
+    "less; the claim is about all polygons. No finite list of counts is a proof about all n; what "
+    "proves that weaves (zigzag, convex-weave) have quadratically many vertices in their kernels, "
+    "and so inside, is the derivation in the report of avd study weave."
 )
 
 CLAIMS = (
