@@ -30,6 +30,7 @@ class Quality:
 def least_angles(points: npt.ArrayLike, triangles: npt.ArrayLike) -> Floats:
     """The least angle of each counter-clockwise triangle, in degrees; 0 if it is not positive.
 
+    It is the same double whichever vertex of a triangle comes first.
     ``points``: (n, 2); ``triangles``: (m, 3).
     """
     xy = np.ascontiguousarray(points, dtype=np.float64)
@@ -51,10 +52,18 @@ def _greatest(xy, triangles):
 
 
 @compiled
+def comes_before(xy, a, b):
+    """Whether a is left of b, or straight below."""
+    return xy[a, 0] < xy[b, 0] or (xy[a, 0] == xy[b, 0] and xy[a, 1] < xy[b, 1])
+
+
+@compiled
 def _least(xy, triangles):
     least = np.empty(len(triangles))
     for t in range(len(triangles)):
         a, b, c = triangles[t]
+        while comes_before(xy, b, a) or comes_before(xy, c, a):
+            a, b, c = b, c, a  # rounding depends on the order
         least[t] = np.degrees(
             triangle_least(xy[a, 0], xy[a, 1], xy[b, 0], xy[b, 1], xy[c, 0], xy[c, 1])
         )

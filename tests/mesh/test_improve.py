@@ -182,3 +182,30 @@ def test_vertices_that_no_triangle_uses_do_not_matter() -> None:
     plain, more = improve(points, triangles), improve(far, triangles)
     assert (more.points == np.concatenate([plain.points, far[-1:]])).all()
     assert more.after == plain.after
+
+
+@pytest.mark.parametrize("gap", [1e-6, 1e-12, 1e-14, 1e-200])
+@pytest.mark.parametrize("topology", ["fixed", "flip", "full"])
+def test_the_smallest_angle_does_not_get_worse_however_small_it_is(gap, topology) -> None:
+    # What all other angles gain, the triangle of the two close boundary vertices would lose.
+    points = [(0, -gap), (3, -1), (3, 1), (0, gap), (0.3, 0)]
+    triangles = [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)]
+    better = improve(points, triangles, topology=topology)
+    assert better.before.smallest == pytest.approx(np.degrees(2 * gap / 0.3), rel=1e-4, abs=0)
+    assert better.after.smallest >= better.before.smallest
+
+
+@given(triangulations())
+def test_figures_do_not_depend_on_the_order_of_vertices(made) -> None:
+    points, triangles = made
+    points = points * [1, 1e-9]
+    turned = np.roll(triangles, 1, axis=1)
+    assert (least_angles(points, triangles) == least_angles(points, turned)).all()
+
+
+def test_small_angles_have_all_their_digits() -> None:
+    for apex in range(3):
+        points = np.roll([(1.0, 0.0), (1.0, 1e-20), (0.0, 0.0)], apex, axis=0)
+        assert least_angles(points, [(0, 1, 2)]) == pytest.approx(
+            np.degrees(1e-20), rel=1e-9, abs=0
+        )
