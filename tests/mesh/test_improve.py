@@ -209,3 +209,13 @@ def test_small_angles_have_all_their_digits() -> None:
         assert least_angles(points, [(0, 1, 2)]) == pytest.approx(
             np.degrees(1e-20), rel=1e-9, abs=0
         )
+
+
+def test_angles_of_small_triangles_in_large_meshes_have_their_digits() -> None:
+    points = np.array([(1, 1), (-5e-61, 4e-61), (-6e-61, 6e-60), (0, 0), (1e-200, 0), (0, 1e-200)])
+    assert least_angles(points, [(3, 4, 5)]) == pytest.approx(45)
+    assert least_angles(points[[0, 3, 4, 5]], [(1, 2, 3), (1, 2, 0)])[0] == pytest.approx(45)
+    side = points[2] - points[1]
+    turn = (side[1] - side[0]) / 2  # divided by the squared distance to (1, 1)
+    found = least_angles(points, [(0, 2, 1), (2, 1, 0), (1, 0, 2)])
+    assert found == pytest.approx(np.degrees(turn), rel=1e-9, abs=0)
