@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from harness.cli.ending import tidily
 from harness.cli.options import natural, positive
 from harness.cli.pictures import add_picture_options, picture_format, write_picture
 from harness.mesh.options import OBJECTIVES, REMEDIES, SWEEPS, TOPOLOGIES
@@ -150,7 +151,8 @@ def improve(args: argparse.Namespace) -> int:
         time_limit=args.time_limit,
         tell=None if args.quiet else _tell,
     )
-    lost = _write(args.target, stored, better)
+    with tidily():
+        lost = _write(args.target, stored, better)
     record = {
         "file": str(args.source),
         "out": str(args.target),

@@ -43,7 +43,8 @@ def improve_all(state: State, sweeps: int) -> None:
         state.record("soft")
         if state.history[-1].quality.smallest > best[1][0]:
             best = _kept(state), state.least
-    if rises(state.least, best[1]):
+    now = state.least
+    if rises(now, best[1]) or not rises(begin, now):
         state.x[:], state.y[:] = best[0]
     _mend(state, sweeps - soft)
     if not rises(begin, state.least):

@@ -12,6 +12,8 @@ TINY = 2.0**-1050
 the computed one exceeds ROUND · (sum of the absolute products) + TINY (proof:
 :func:`harness.geometry.sweep.turn`)."""
 INVERTED = -1.0
+SLIM = 1e-6
+"""Radians below which the third angle is not taken as what is left of π: that has few digits."""
 
 
 @compiled
@@ -46,7 +48,9 @@ def star_angles(px, py, k, rx, ry, strict, angles):
         ex, ey = rx[j] - rx[i], ry[j] - ry[i]
         apex = np.arctan2(cross, wx * ux + wy * uy)
         base = np.arctan2(cross, -(wx * ex + wy * ey))
-        rest = max(np.pi - apex - base, 0.0)
+        rest = np.pi - apex - base
+        if rest < SLIM:
+            rest = np.arctan2(cross, ux * ex + uy * ey)
         angles[3 * i], angles[3 * i + 1], angles[3 * i + 2] = apex, base, rest
         least = min(least, apex, base, rest)
         wx, wy = ux, uy
@@ -61,8 +65,12 @@ def triangle_least(ax, ay, bx, by, cx, cy):
     if not cross > 0.0:
         return 0.0
     first = np.arctan2(cross, ux * wx + uy * wy)
-    second = np.arctan2(cross, -(ux * (wx - ux) + uy * (wy - uy)))
-    return max(min(first, second, np.pi - first - second), 0.0)
+    ex, ey = wx - ux, wy - uy
+    second = np.arctan2(cross, -(ux * ex + uy * ey))
+    third = np.pi - first - second
+    if third < SLIM:
+        third = np.arctan2(cross, wx * ex + wy * ey)
+    return min(first, second, third)
 
 
 @compiled

@@ -16,7 +16,7 @@ from harness.mesh.cuts import cut, uncut
 from harness.mesh.glue import glued
 from harness.mesh.mesh import Mesh
 from harness.mesh.methods import GUARDED, run
-from harness.mesh.options import Options
+from harness.mesh.options import Options, check_limits
 from harness.mesh.quality import Quality, quality_of
 from harness.mesh.stars import Ints
 from harness.mesh.state import Sweep, state_of, with_places
@@ -128,7 +128,12 @@ def improve_mesh(
     time_limit: float | None = None,
     tell: Callable[[Sweep], None] | None = None,
 ) -> Improved:
-    """The same for a mesh that is checked."""
+    """The same for a mesh that is checked.
+
+    Raises:
+        UserError: ``workers`` or ``time_limit`` is no such number.
+    """
+    check_limits(workers, time_limit)
     start = time.perf_counter()
     deadline = np.inf if time_limit is None else time.monotonic() + time_limit
     whole = cut(mesh) if options.reconnects and len(mesh.kept) else uncut(mesh)

@@ -150,8 +150,8 @@ def write_mesh(
 
     ``points``: (n, 2), in place of those of ``stored``; z, cells, point and cell data stay as
     they were.  With ``triangles``, the connectivity is new; then ``vertices``, ``cells`` and
-    ``made`` say what data they take, as in :class:`harness.mesh.door.Improved`.  Returns what the
-    format does not hold.
+    ``made`` say what data they take, as in :class:`harness.mesh.door.Improved`; they are written
+    clockwise if those of the file are.  Returns what the format does not hold.
 
     Raises:
         UserError: the format is unknown or cannot hold the mesh.
@@ -159,9 +159,13 @@ def write_mesh(
     if triangles is None or vertices is None or cells is None:
         contents = with_points(stored.contents, points)
     else:
-        contents = with_triangles(
-            stored.contents, Renewed(points, triangles, vertices, cells, made)
-        )
+        turned = triangles[:, ::-1] if _is_clockwise(stored) else triangles
+        contents = with_triangles(stored.contents, Renewed(points, turned, vertices, cells, made))
     content, lost = written(contents, Path(path))
     replace(Path(path), content)
     return lost
+
+
+def _is_clockwise(stored: Stored) -> bool:
+    """Whether the triangles had to be turned round when they were checked."""
+    return bool((triangles_in(stored.contents)[0] != stored.mesh.triangles[0]).any())

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import numpy.typing as npt
 
@@ -35,7 +37,7 @@ def interfaces(
     shared, pairs = shared_edges(corners)
     chosen = np.zeros(len(shared), dtype=np.bool_)
     if regions is not None:
-        given = np.asarray(regions)
+        given = array_of("regions", regions)
         if given.shape[:1] != (len(corners),) or given.ndim > 2:
             raise UserError(f"regions need one entry (or row) for each of {len(corners)} triangles")
         given = given.reshape(len(corners), -1)
@@ -50,8 +52,20 @@ def interfaces(
     return shared[chosen]
 
 
+def array_of(name: str, values: npt.ArrayLike) -> npt.NDArray[Any]:
+    """An argument as an array.
+
+    Raises:
+        UserError: it is none, as its rows are not of one length.
+    """
+    try:
+        return np.asarray(values)
+    except ValueError as error:
+        raise UserError(f"{name} must be an array: {error}") from None
+
+
 def _wanted(edges: npt.ArrayLike) -> Ints:
-    given = np.asarray(edges)
+    given = array_of("edges", edges)
     if given.size == 0:
         return np.empty((0, 2), dtype=np.int64)
     if given.ndim != 2 or given.shape[1] != 2 or not np.issubdtype(given.dtype, np.integer):

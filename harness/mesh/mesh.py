@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from harness.errors import UserError
-from harness.mesh.interfaces import interfaces
+from harness.mesh.interfaces import array_of, interfaces
 from harness.mesh.stars import Flags, Ints, Stars
 from harness.mesh.validation import Floats, checked
 
@@ -66,7 +66,7 @@ def _marked(fixed: npt.ArrayLike | None, n: int) -> Flags:
     marks = np.zeros(n, dtype=np.bool_)
     if fixed is None:
         return marks
-    given = np.asarray(fixed)
+    given = array_of("fixed", fixed)
     if given.dtype == np.bool_ and given.shape == (n,):
         return given.copy()
     if given.size and (given.ndim != 1 or not np.issubdtype(given.dtype, np.integer)):

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from numbers import Integral, Real
 
-from harness.errors import UserError, suggestion
+from harness.errors import UserError, shown, suggestion
 
 OBJECTIVES = ("all", "apex", "laplacian", "smart-laplacian", "combined")
 """``all``: raise the smallest of all angles.  ``apex``: the paper's greedy, which looks at the
@@ -17,7 +19,7 @@ TOPOLOGIES = ("fixed", "flip", "full")
 REMEDIES = ("none", "bisector", "chord", "both")
 """Against small angles at the rim of a star after a move of ``apex`` (paper, Figure 6); a chord
 changes the connectivity."""
-SWEEPS = 20
+SWEEPS, MOST_SWEEPS = 20, 10**6
 
 
 @dataclass(frozen=True)
@@ -37,8 +39,7 @@ class Options:
             if value not in names:
                 hint = suggestion(str(value), names) or f"it is one of {', '.join(names)}"
                 raise UserError(f"{key} {value!r} is unknown; {hint}")
-        if self.sweeps < 0:
-            raise UserError(f"sweeps {self.sweeps} must be at least 0")
+        _check_whole("sweeps", self.sweeps, 0, MOST_SWEEPS)
         if self.topology != "fixed" and self.objective != "all":
             raise UserError(f"topology {self.topology} needs the objective 'all'")
         if self.remedy != "none" and self.objective != "apex":
@@ -48,3 +49,19 @@ class Options:
     def reconnects(self) -> bool:
         """Whether edges may change."""
         return self.topology != "fixed" or self.remedy in ("chord", "both")
+
+
+def check_limits(workers: object, time_limit: object) -> None:
+    """Raise UserError unless these are a number of threads and one of seconds, or None."""
+    if workers is not None:
+        _check_whole("workers", workers, 1)
+    if time_limit is None:
+        return
+    if not isinstance(time_limit, Real) or math.isnan(time_limit) or time_limit < 0:
+        raise UserError(f"time_limit {shown(time_limit)} must be a number of seconds, at least 0")
+
+
+def _check_whole(name: str, value: object, least: int, most: float = math.inf) -> None:
+    if not isinstance(value, Integral) or not least <= int(value) <= most:
+        limit = f" and at most {most}" if most < math.inf else ""
+        raise UserError(f"{name} {shown(value)} must be a whole number, at least {least}{limit}")

@@ -12,6 +12,9 @@ from harness.mesh.angles import triangle_least
 from harness.mesh.stars import Ints
 from harness.mesh.validation import Floats
 
+SMALL, LARGER = 2.0**-300, 2.0**600
+"""Products of sides below the first have no digits, unless they are multiplied by the second."""
+
 
 @dataclass(frozen=True)
 class Quality:
@@ -30,6 +33,7 @@ class Quality:
 def least_angles(points: npt.ArrayLike, triangles: npt.ArrayLike) -> Floats:
     """The least angle of each counter-clockwise triangle, in degrees; 0 if it is not positive.
 
+    It is the same double whichever vertex of a triangle comes first.
     ``points``: (n, 2); ``triangles``: (m, 3).
     """
     xy = np.ascontiguousarray(points, dtype=np.float64)
@@ -51,13 +55,37 @@ def _greatest(xy, triangles):
 
 
 @compiled
+def is_shorter(xy, a, b, c, d):
+    """Whether the side a–b is shorter than c–d; of equal ones, whether a is left of c or below."""
+    first = max(abs(xy[b, 0] - xy[a, 0]), abs(xy[b, 1] - xy[a, 1]))
+    second = max(abs(xy[d, 0] - xy[c, 0]), abs(xy[d, 1] - xy[c, 1]))
+    if first != second:
+        return first < second
+    return xy[a, 0] < xy[c, 0] or (xy[a, 0] == xy[c, 0] and xy[a, 1] < xy[c, 1])
+
+
+@compiled
+def shortest_first(xy, a, b, c):
+    """The corners of a triangle, in their order, such that a–b is the shortest side.
+
+    Seen from there, differences of coordinates keep most digits; and what is computed does not
+    depend on the order that was given.
+    """
+    while is_shorter(xy, b, c, a, b) or is_shorter(xy, c, a, a, b):
+        a, b, c = b, c, a
+    return a, b, c
+
+
+@compiled
 def _least(xy, triangles):
     least = np.empty(len(triangles))
     for t in range(len(triangles)):
-        a, b, c = triangles[t]
-        least[t] = np.degrees(
-            triangle_least(xy[a, 0], xy[a, 1], xy[b, 0], xy[b, 1], xy[c, 0], xy[c, 1])
-        )
+        a, b, c = shortest_first(xy, triangles[t, 0], triangles[t, 1], triangles[t, 2])
+        ux, uy = xy[b, 0] - xy[a, 0], xy[b, 1] - xy[a, 1]
+        wx, wy = xy[c, 0] - xy[a, 0], xy[c, 1] - xy[a, 1]
+        if max(abs(ux), abs(uy)) < SMALL and max(abs(wx), abs(wy)) < SMALL:
+            ux, uy, wx, wy = ux * LARGER, uy * LARGER, wx * LARGER, wy * LARGER
+        least[t] = np.degrees(triangle_least(0.0, 0.0, ux, uy, wx, wy))
     return least
 
 

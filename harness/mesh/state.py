@@ -183,9 +183,12 @@ def with_places(mesh: Mesh, count: int) -> Mesh:
 def rises(before: Floats, after: Floats) -> bool:
     """Whether a vector of angles, sorted increasingly, is above another in lexicographic order.
 
-    In degrees; differences of at most ``SAME`` are none.  Vectors may differ in length: the one
-    that ends first is above, as what is not there is not bad.
+    In degrees; differences of at most ``SAME`` are none, but nothing is above whose first angle
+    is less, however small both are.  Vectors may differ in length: the one that ends first is
+    above, as what is not there is not bad.
     """
+    if after[0] < before[0]:
+        return False
     m = min(len(before), len(after))
     apart = np.flatnonzero(np.abs(after[:m] - before[:m]) > SAME)
     if len(apart):

@@ -11,11 +11,14 @@ from harness.errors import UserError
 from harness.geometry.instance import Instance
 from harness.geometry.predicates import orientations
 from harness.geometry.validation import first_conflict
+from harness.mesh.pieces import stacked
 from harness.mesh.stars import TWICE, Fault, Ints, Stars, stars_of, windings
 
 Floats = npt.NDArray[np.float64]
 NEAR = 1e-6
 """The sum of a fan's angles in doubles is far better than that."""
+LARGE = 2.0**1022
+"""Coordinates above it may differ by more than the greatest double."""
 
 
 def checked(points: npt.ArrayLike, triangles: npt.ArrayLike) -> tuple[Floats, Ints, Stars]:
@@ -104,7 +107,7 @@ def _refuse_folds(xy: Floats, corners: Ints, stars: Stars) -> None:
     _refuse_wide_fans(xy, corners, stars)
     edges, owners = boundary(corners)
     _refuse_crossings(xy, edges, owners)
-    _refuse_stacked(xy, corners, edges)
+    _refuse_stacked(xy, corners)
 
 
 def _one_at(corners: Ints, vertex: int) -> int:
@@ -127,9 +130,10 @@ def boundary(corners: Ints) -> tuple[Ints, Ints]:
 def _refuse_wide_fans(xy: Floats, corners: Ints, stars: Stars) -> None:
     """An open star turns by at most 2π; near that, the sides of its first and last edge decide."""
     totals = np.zeros(len(xy))
+    near = np.ldexp(xy, -1) if np.abs(xy).max() > LARGE else xy  # differences are doubles
     for k in range(3):
-        here = xy[corners[:, k]]
-        u, w = xy[corners[:, (k + 1) % 3]] - here, xy[corners[:, (k + 2) % 3]] - here
+        here = near[corners[:, k]]
+        u, w = near[corners[:, (k + 1) % 3]] - here, near[corners[:, (k + 2) % 3]] - here
         size = np.maximum(np.abs(u).max(axis=1), np.abs(w).max(axis=1))[:, np.newaxis]
         u, w = u / size, w / size
         turn = np.arctan2(u[:, 0] * w[:, 1] - u[:, 1] * w[:, 0], (u * w).sum(axis=1))
@@ -160,25 +164,8 @@ def _refuse_crossings(xy: Floats, edges: Ints, owners: Ints) -> None:
         _refuse(j, f"is folded over triangle {i}: their boundary edges cross")
 
 
-def _refuse_stacked(xy: Floats, corners: Ints, edges: Ints) -> None:
-    """No piece lies in a triangle of another; boundaries do not cross, so one point tells."""
-    from scipy.sparse import coo_matrix
-    from scipy.sparse.csgraph import connected_components
-
-    links = np.concatenate([corners[:, :2], corners[:, 1:]])
-    ones = np.ones(len(links), dtype=np.int8)
-    graph = coo_matrix((ones, (links[:, 0], links[:, 1])), shape=(len(xy), len(xy)))
-    _, piece = connected_components(graph, directed=False)
-    of_triangle = piece[corners[:, 0]]
-    _, firsts = np.unique(of_triangle, return_index=True)
-    if len(firsts) == 1:
-        return
-    low, high = xy[corners].min(axis=1), xy[corners].max(axis=1)
-    for t in firsts.tolist():
-        p = xy[corners[t]].mean(axis=0)  # a point inside, wherever rounding puts it
-        near = np.flatnonzero((low <= p).all(axis=1) & (p <= high).all(axis=1))
-        a, b, c = (xy[corners[near, k]] for k in range(3))
-        inside = (orientations(a, b, p) > 0) & (orientations(b, c, p) > 0)
-        inside &= (orientations(c, a, p) > 0) & (of_triangle[near] != of_triangle[t])
-        if inside.any():
-            _refuse(t, f"lies on triangle {near[inside][0]} of another piece of the mesh")
+def _refuse_stacked(xy: Floats, corners: Ints) -> None:
+    """No piece lies on another."""
+    pair = stacked(xy, corners)
+    if pair is not None:
+        _refuse(pair[0], f"lies on triangle {pair[1]} of another piece of the mesh")

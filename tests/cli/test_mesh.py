@@ -128,6 +128,35 @@ def test_an_interrupted_run_leaves_the_old_file(tmp_path) -> None:
     assert sorted(path.name for path in tmp_path.iterdir()) == ["in.vtk", "out.vtk"]
 
 
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+def test_an_end_while_writing_leaves_no_scratch_files(
+    source, tmp_path, capsys, monkeypatch, number
+) -> None:
+    scratch = tmp_path / "scratch"
+    scratch.mkdir()
+    write = meshio.write
+
+    def ended(*arguments, **settings) -> None:
+        write(*arguments, **settings)
+        assert any(scratch.iterdir())
+        signal.raise_signal(number)
+
+    def reached(*_) -> None:
+        raise AssertionError("this would have ended the program at once")
+
+    monkeypatch.setattr("tempfile.tempdir", str(scratch))
+    monkeypatch.setattr(meshio, "write", ended)
+    before = signal.signal(number, reached)
+    try:
+        assert main(["mesh", "improve", str(source), str(source), "--quiet"]) == 130
+        assert signal.getsignal(number) is reached
+    finally:
+        signal.signal(number, before)
+    assert capsys.readouterr().err == "avd: interrupted\n"
+    assert not any(scratch.iterdir())
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["in.vtk", "scratch"]
+
+
 @pytest.mark.parametrize("suffix", ["svg", "png", "pdf"])
 def test_draw_writes_a_picture(source, tmp_path, suffix) -> None:
     picture = tmp_path / f"mesh.{suffix}"

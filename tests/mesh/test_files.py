@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from harness.errors import UserError
+from harness.geometry.predicates import orientations
 from harness.mesh import read_mesh, write_mesh
 from harness.mesh.door import improve_mesh
 from harness.mesh.options import Options
@@ -55,6 +56,19 @@ def test_data_lines_and_z_are_kept(tmp_path) -> None:
     assert {"line", "triangle"} == {block.type for block in out.cells}
     values = np.concatenate([np.asarray(part) for part in out.cell_data["region"]])
     assert sorted(values.tolist()) == sorted([*region.tolist(), 8, 9])
+
+
+@pytest.mark.parametrize("topology", ["fixed", "flip", "full"])
+@pytest.mark.parametrize("step", [1, -1])
+def test_triangles_stay_clockwise_or_not(tmp_path, topology, step) -> None:
+    points, triangles = random_mesh(40)
+    stored = read_mesh(written(tmp_path / "in.vtk", points, triangles[:, ::step]))
+    better = improve_mesh(stored.mesh, Options(topology=topology))
+    changed = {"vertices": better.vertices, "cells": better.cells, "made": better.made}
+    write_mesh(tmp_path / "out.vtk", stored, better.points, better.triangles, **changed)
+    out = meshio.read(tmp_path / "out.vtk")
+    corners = (out.points[out.cells[0].data[:, k], :2] for k in range(3))
+    assert (orientations(*corners) == step).all()
 
 
 def test_point_data_can_mark_fixed_vertices(tmp_path) -> None:

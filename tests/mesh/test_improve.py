@@ -150,6 +150,18 @@ def test_sweeps_are_told_as_they_happen() -> None:
         ({"topology": "free"}, "topology 'free'"),
         ({"remedy": "ear"}, "remedy 'ear'"),
         ({"sweeps": -1}, "sweeps -1"),
+        ({"sweeps": 2.5}, "sweeps 2.5 must be a whole number"),
+        ({"sweeps": "3"}, "sweeps '3' must be a whole number"),
+        ({"sweeps": 10**9}, "sweeps 1000000000 must be .* at most 1000000"),
+        ({"workers": 0}, "workers 0 must be a whole number, at least 1"),
+        ({"workers": -1}, "workers -1"),
+        ({"workers": "two"}, "workers 'two'"),
+        ({"time_limit": -1}, "time_limit -1 must be a number of seconds"),
+        ({"time_limit": float("nan")}, "time_limit nan"),
+        ({"time_limit": "soon"}, "time_limit 'soon'"),
+        ({"fixed": [1, [2, 3]]}, "fixed must be an array"),
+        ({"regions": [1, [2, 3]]}, "regions must be an array"),
+        ({"edges": [[1, 2], [3]]}, "edges must be an array"),
         ({"objective": "apex", "topology": "flip"}, "needs the objective 'all'"),
         ({"remedy": "chord"}, "needs the objective 'apex'"),
     ],
@@ -182,3 +194,40 @@ def test_vertices_that_no_triangle_uses_do_not_matter() -> None:
     plain, more = improve(points, triangles), improve(far, triangles)
     assert (more.points == np.concatenate([plain.points, far[-1:]])).all()
     assert more.after == plain.after
+
+
+@pytest.mark.parametrize("gap", [1e-6, 1e-12, 1e-14, 1e-200])
+@pytest.mark.parametrize("topology", ["fixed", "flip", "full"])
+def test_the_smallest_angle_does_not_get_worse_however_small_it_is(gap, topology) -> None:
+    # What all other angles gain, the triangle of the two close boundary vertices would lose.
+    points = [(0, -gap), (3, -1), (3, 1), (0, gap), (0.3, 0)]
+    triangles = [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)]
+    better = improve(points, triangles, topology=topology)
+    assert better.before.smallest == pytest.approx(np.degrees(2 * gap / 0.3), rel=1e-4, abs=0)
+    assert better.after.smallest >= better.before.smallest
+
+
+@given(triangulations())
+def test_figures_do_not_depend_on_the_order_of_vertices(made) -> None:
+    points, triangles = made
+    points = points * [1, 1e-9]
+    turned = np.roll(triangles, 1, axis=1)
+    assert (least_angles(points, triangles) == least_angles(points, turned)).all()
+
+
+def test_small_angles_have_all_their_digits() -> None:
+    for apex in range(3):
+        points = np.roll([(1.0, 0.0), (1.0, 1e-20), (0.0, 0.0)], apex, axis=0)
+        assert least_angles(points, [(0, 1, 2)]) == pytest.approx(
+            np.degrees(1e-20), rel=1e-9, abs=0
+        )
+
+
+def test_angles_of_small_triangles_in_large_meshes_have_their_digits() -> None:
+    points = np.array([(1, 1), (-5e-61, 4e-61), (-6e-61, 6e-60), (0, 0), (1e-200, 0), (0, 1e-200)])
+    assert least_angles(points, [(3, 4, 5)]) == pytest.approx(45)
+    assert least_angles(points[[0, 3, 4, 5]], [(1, 2, 3), (1, 2, 0)])[0] == pytest.approx(45)
+    side = points[2] - points[1]
+    turn = (side[1] - side[0]) / 2  # divided by the squared distance to (1, 1)
+    found = least_angles(points, [(0, 2, 1), (2, 1, 0), (1, 0, 2)])
+    assert found == pytest.approx(np.degrees(turn), rel=1e-9, abs=0)

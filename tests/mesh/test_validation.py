@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -81,6 +83,21 @@ REFUSED = {
         [[0, 1, 2], [3, 4, 5]],
         r"triangle 1 .* lies on triangle 0",
     ),
+    "a piece on an edge of another": (
+        [*SQUARE, [0.75, 0.75], [1.25, 0.75], [0.75, 1.25]],
+        [[0, 1, 2], [0, 2, 3], [4, 5, 6]],
+        r"triangle 2 .* lies on triangle 0",
+    ),
+    "a piece on a vertex of another": (
+        [*SQUARE, [1, 1], [0.75, 0.75], [1.25, 0.75], [1, 1.5]],
+        [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4], [5, 6, 7]],
+        r"triangle 4 .* lies on triangle 0",
+    ),
+    "a piece with corners in common": (
+        [[0, 0], [6, 0], [6, 6], [0, 6], [3, 3], [0, 0], [6, 0], [6, 6]],
+        [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4], [5, 6, 7]],
+        r"triangle 4 .* folded over triangle 0",
+    ),
     "the same piece twice": (
         [[0, 0], [9, 0], [0, 9], [0, 0], [9, 0], [0, 9]],
         [[0, 1, 2], [3, 4, 5]],
@@ -120,6 +137,15 @@ def test_a_fan_that_turns_too_far_is_folded_and_a_crack_is_not() -> None:
     assert not len(Mesh.of(points, triangles).free)
 
 
+def test_fans_are_measured_where_differences_are_no_doubles() -> None:
+    points, triangles = grid_mesh(1)
+    m = np.finfo(np.float64).max
+    assert not len(Mesh.of((2 * points - 1) * m, triangles).free)
+    spiral, around = fan(1.1, 6, closed=False)
+    with pytest.raises(UserError, match="folded over others at vertex 0"):
+        Mesh.of(spiral * m, around)
+
+
 def test_pieces_beside_each_other_and_holes_are_fine() -> None:
     points, triangles = grid_mesh(4)
     centres = points[triangles].mean(axis=1)
@@ -127,6 +153,19 @@ def test_pieces_beside_each_other_and_holes_are_fine() -> None:
     inner = np.array([[0.4, 0.4], [0.6, 0.4], [0.5, 0.6]])
     mesh = Mesh.of(np.concatenate([points, inner]), np.concatenate([ring, [[25, 26, 27]]]))
     assert not len(mesh.free)
+
+
+def test_many_pieces_are_told_apart_in_time() -> None:
+    ticks = np.meshgrid(np.arange(150.0), np.arange(150.0))
+    corner = np.array([[0.0, 0.0], [0.5, 0.1], [0.2, 0.6]])
+    points = (np.stack(ticks, axis=-1).reshape(-1, 1, 2) + corner).reshape(-1, 2)
+    triangles = np.arange(len(points)).reshape(-1, 3)
+    begin = time.perf_counter()
+    assert len(Mesh.of(points, triangles).triangles) == 22500
+    points[-3:] = [0.2, 0.2] + 0.01 * (points[-3:] - points[-3])
+    with pytest.raises(UserError, match=r"triangle 22499 .* lies on triangle 0 of another"):
+        Mesh.of(points, triangles)
+    assert time.perf_counter() - begin < 10
 
 
 def test_fixed_vertices_are_indices_or_truth_values() -> None:
