@@ -27,9 +27,8 @@ from harness.diagram.fast.decisions import enclosed, exact_cubic, exact_forms, h
 from harness.diagram.fast.leaves import EMPTY, HARD
 from harness.diagram.fast.plane import turns_left
 from harness.diagram.fast.roots import Roots, between, free_number
-from harness.diagram.fast.rows import Rows, halving_directions, normalised, square_root
+from harness.diagram.fast.rows import FarTies, halving_directions, normalised, square_root, vector
 from harness.diagram.planar_map import RationalPoint
-from harness.diagram.work import Hopeless
 from harness.geometry.instance import Instance
 from harness.geometry.predicates import orientation
 
@@ -43,25 +42,22 @@ FEWEST = 4
 class Hubs:
     """Known hubs and the segments of the leaf each was found in: points, and directions.
 
-    ``cuts``: the points among them at which a side was cut.  ``rows``: what ties in directions that
-    are known from the beginning.
+    ``cuts``: the points among them at which a side was cut.  ``known``: ties in directions that are
+    known from the beginning.
     """
 
     points: dict[RationalPoint, list[int]] = field(default_factory=dict)
     directions: dict[RationalPoint, list[int]] = field(default_factory=dict)
     cuts: set[RationalPoint] = field(default_factory=set)
-    rows: Rows = field(default_factory=dict)
+    known: FarTies = field(default_factory=dict)
 
     def all_directions(self) -> list[RationalPoint]:
         """The directions, each once."""
-        return list(dict.fromkeys([*self.rows, *self.directions]))
+        return list(dict.fromkeys([*self.known, *self.directions]))
 
 
 def find_hubs(instance: Instance, roots: Roots, leaves: Leaves, sense: float, hubs: Hubs) -> bool:
-    """Look for hubs in all hard leaves and add them; whether any is new.
-
-    Raises Hopeless at a hub at infinity that is not rational.
-    """
+    """Look for hubs in all hard leaves and add them; whether any is new."""
     before = len(hubs.points) + len(hubs.directions)
     shaped = (leaves.kinds != EMPTY).nonzero()[0]
     for number, row in enumerate(open_rows(leaves).tolist()):
@@ -72,13 +68,9 @@ def find_hubs(instance: Instance, roots: Roots, leaves: Leaves, sense: float, hu
         far = [k for k in range(3) if corners[k][2] == 0]
         if len(far) == 2:
             low, high = (_direction(corners[k]) for k in _in_order(far))
-            inside = [
-                d for d in _directions(instance, ids) if turns_left(low, d) and turns_left(d, high)
-            ]
-            if not inside and len(ids) >= 3:
-                raise Hopeless("many segments tie in an irrational direction at infinity")
-            for d in inside:
-                hubs.directions.setdefault(normalised(d), ids)
+            for d in _directions(instance, ids):
+                if turns_left(low, d) and turns_left(d, high):
+                    hubs.directions.setdefault(normalised(d), ids)
         elif not far:
             point = (
                 _tie_of_many(
@@ -149,14 +141,9 @@ def _direction(corner: tuple[Any, Any, Any]) -> RationalPoint:
     return Fraction(int(x.p), int(x.q)), Fraction(int(y.p), int(y.q))
 
 
-def _vector(instance: Instance, k: int) -> RationalPoint:
-    a, b = instance.rational_segment(k)
-    return b[0] - a[0], b[1] - a[1]
-
-
 def _directions(instance: Instance, ids: list[int]) -> Iterator[RationalPoint]:
     """Directions at infinity at which two of some segments tie without being parallel to them."""
-    vectors = {k: _vector(instance, k) for k in ids}
+    vectors = {k: vector(instance, k) for k in ids}
     for i, j in combinations(ids, 2):
         v, w = vectors[i], vectors[j]
         if v in (w, (-w[0], -w[1])):

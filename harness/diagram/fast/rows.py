@@ -7,9 +7,12 @@ middles, and where a side of their convex hull is orthogonal to N(d) all segment
 hub if there are three, from which asymptotes leave side by side.  The hubs of a row are the
 directions |δ|v ± |v|δ, or that orthogonal to v if δ is parallel to it.
 
-Most of them are irrational.  Their corners then stand for the irrational direction, and what is
-stored of it is a rational one that is closer than 2^−``BITS``: it has the same double-doubles but
-for an error far below theirs, and its turns against all other corners are the same if they are
+Of segments with different vectors v and w those tie in the directions v ± w that are the best of
+their classes in that order.
+
+Most hubs of rows are irrational.  Their corners then stand for the irrational direction, and what
+is stored of it is a rational one that is closer than 2^−``BITS``.  It has the same double-doubles
+but for an error far below theirs, and its turns against all other corners are the same if they are
 farther than ``APART``, which is checked.  That the row ties there is known by the above, not from
 coordinates, and a triangle at infinity is never handed to algebra.
 """
@@ -19,7 +22,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
-from itertools import combinations
+from itertools import combinations, permutations
 from math import isqrt
 
 from harness.diagram.planar_map import RationalPoint
@@ -33,32 +36,85 @@ BITS = 512
 #: Different directions are told apart if they are not closer.
 APART = Fraction(1, 2**200)
 
-#: The rows that tie in each direction.
-Rows = dict[RationalPoint, list[list[int]]]
+#: Classes at most of segments with one vector whose differences are looked at.
+MOST_CLASSES = 16
+
+#: The ties (i, j, which) in each direction, i < j; see :data:`harness.diagram.fast.ties.Ties`.
+FarTies = dict[RationalPoint, set[tuple[int, int, int]]]
+#: A vector that three or more segments share, up to sign, and these by twice their middles.
+Class = tuple[RationalPoint, Mapping[RationalPoint, list[int]]]
 
 
-def rows_at_infinity(instance: Instance) -> Rows:
-    """The directions in which three or more equal segments tie, and which; O(n log n)."""
-    found: defaultdict[RationalPoint, list[list[int]]] = defaultdict(list)
-    for v, middles in _equal_segments(instance):
+def ties_at_infinity(instance: Instance) -> FarTies:
+    """What ties in directions at infinity where three equal segments do, or two such classes.
+
+    O(n · directions) and all pairs of segments that tie, of which one is among the best.
+    """
+    classes = list(_classes(instance))
+    found: defaultdict[RationalPoint, set[tuple[int, int, int]]] = defaultdict(set)
+    for v, middles in classes:
         for row in _rows(list(middles)):
             members = sorted(k for point in row for k in middles[point])
             if len(members) <= LONGEST:
+                ties = set(_ties_of_row(instance, members))
                 delta = row[-1][0] - row[0][0], row[-1][1] - row[0][1]
                 for d in halving_directions(normalised(v), normalised(delta), _near_root):
-                    found[normalised(d)].append(members)
-    return dict(found)
+                    found[normalised(d)] |= ties
+    if len(classes) <= MOST_CLASSES:
+        for d in [*found, *_between_classes(classes)]:
+            for one, two in permutations(classes, 2):
+                found[d].update(_ties_of_classes(instance, one, two, d))
+    return {d: ties for d, ties in found.items() if ties}
 
 
-def ties_of_rows(
-    instance: Instance, rows: Sequence[Sequence[int]]
+def _classes(instance: Instance) -> Iterator[Class]:
+    found: defaultdict[RationalPoint, dict[RationalPoint, list[int]]] = defaultdict(dict)
+    for k, (a, b) in enumerate(instance.rational_segments()):
+        v = max((b[0] - a[0], b[1] - a[1]), (a[0] - b[0], a[1] - b[1]))
+        found[v].setdefault((a[0] + b[0], a[1] + b[1]), []).append(k)
+    return ((v, middles) for v, middles in found.items() if len(middles) >= 3)
+
+
+def _ties_of_row(instance: Instance, row: Sequence[int]) -> Iterator[tuple[int, int, int]]:
+    vectors = {k: vector(instance, k) for k in row}
+    for i, j in combinations(row, 2):
+        yield i, j, 4 if vectors[i] == vectors[j] else 8
+
+
+def _between_classes(classes: Sequence[Class]) -> Iterator[RationalPoint]:
+    """The directions v ± w."""
+    for (v, _), (w, _) in combinations(classes, 2):
+        for sign in (1, -1):
+            x, y = normalised((v[0] + sign * w[0], v[1] + sign * w[1]))
+            yield x, y
+            yield -x, -y
+
+
+def _ties_of_classes(
+    instance: Instance, one: Class, two: Class, d: RationalPoint
 ) -> Iterator[tuple[int, int, int]]:
-    """The ties (i, j, which) of rows in a direction that is theirs; see
-    :data:`harness.diagram.fast.ties.Ties`."""
-    for row in rows:
-        vectors = {k: _vector(instance, k) for k in row}
-        for i, j in combinations(row, 2):
-            yield i, j, 4 if vectors[i] == vectors[j] else 8
+    """The ties between the best segments of a class and all of another."""
+    (v, middles), (w, others) = one, two
+    if abs(_cross(d, v)) != abs(_cross(d, w)):
+        return
+    for i in _best(v, middles, d):
+        li = _cross(d, vector(instance, i))
+        for j in (k for ids in others.values() for k in ids):
+            yield min(i, j), max(i, j), 1 if _cross(d, vector(instance, j)) == li else 2
+
+
+def _best(
+    v: RationalPoint, middles: Mapping[RationalPoint, list[int]], d: RationalPoint
+) -> list[int]:
+    """The segments of a class that are extreme in the direction d at infinity."""
+    square, across = d[0] ** 2 + d[1] ** 2, _cross(d, v)
+    values = {m: square * _cross(v, m) + 2 * (m[0] * d[0] + m[1] * d[1]) * across for m in middles}
+    extremes = min(values.values()), max(values.values())
+    return [k for m, ids in middles.items() if values[m] in extremes for k in ids]
+
+
+def _cross(a: RationalPoint, b: RationalPoint) -> Fraction:
+    return a[0] * b[1] - a[1] * b[0]
 
 
 def normalised(d: RationalPoint) -> RationalPoint:
@@ -110,20 +166,10 @@ def _near_root(value: Fraction) -> Fraction:
     return Fraction(isqrt(product << 2 * shift), value.denominator << shift)
 
 
-def _vector(instance: Instance, k: int) -> RationalPoint:
+def vector(instance: Instance, k: int) -> RationalPoint:
+    """From a segment's first endpoint to its second."""
     a, b = instance.rational_segment(k)
     return b[0] - a[0], b[1] - a[1]
-
-
-def _equal_segments(
-    instance: Instance,
-) -> Iterator[tuple[RationalPoint, Mapping[RationalPoint, list[int]]]]:
-    """The vectors that three or more segments share, and these by twice their middles."""
-    classes: defaultdict[RationalPoint, dict[RationalPoint, list[int]]] = defaultdict(dict)
-    for k, (a, b) in enumerate(instance.rational_segments()):
-        v = max((b[0] - a[0], b[1] - a[1]), (a[0] - b[0], a[1] - b[1]))
-        classes[v].setdefault((a[0] + b[0], a[1] + b[1]), []).append(k)
-    return ((v, middles) for v, middles in classes.items() if len(middles) >= 3)
 
 
 def _rows(points: Sequence[RationalPoint]) -> Iterator[list[RationalPoint]]:

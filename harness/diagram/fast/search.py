@@ -10,7 +10,7 @@ from harness.diagram.fast.hubs import Hubs, find_hubs
 from harness.diagram.fast.plane import plane_roots
 from harness.diagram.fast.prepare import Prepared
 from harness.diagram.fast.roots import Roots
-from harness.diagram.fast.rows import rows_at_infinity
+from harness.diagram.fast.rows import ties_at_infinity
 from harness.diagram.fast.ties import Ties, tie_arrays, ties_at_corners, ties_at_hubs
 from harness.diagram.work import Contradiction, Hopeless
 from harness.geometry.kernel import Kernel
@@ -35,7 +35,7 @@ def search(
     become special corners, and everything is subdivided anew.  Raises Contradiction if that does
     not end, Hopeless if the halving does not: where three segments tie along a curve, for one.
     """
-    hubs = Hubs(rows=rows_at_infinity(prepared.instance) if domain == "plane" else {})
+    hubs = Hubs(known=ties_at_infinity(prepared.instance) if domain == "plane" else {})
     sense = 1.0 if objective == "smallest" else -1.0
     for _ in range(ROUNDS):
         roots, spans = _roots(prepared, domain, found, sense, seed, hubs)

@@ -13,7 +13,6 @@ from harness.diagram.fast.hubs import Hubs
 from harness.diagram.fast.plane import same_direction
 from harness.diagram.fast.prepare import Ints
 from harness.diagram.fast.roots import Roots
-from harness.diagram.fast.rows import ties_of_rows
 from harness.diagram.planar_map import RationalPoint
 from harness.geometry.instance import Instance
 
@@ -38,11 +37,11 @@ def ties_at_corners(instance: Instance, roots: Roots, leaves: Leaves) -> Ties:
 
 
 def ties_at_hubs(instance: Instance, roots: Roots, hubs: Hubs) -> Ties:
-    """Ties at hubs, between the segments of the leaves in which they were found, and of rows."""
+    """Ties at hubs, between the segments of the leaves in which they were found, and known ones."""
     found: Ties = set()
     corners = roots.corners
     weights = np.array(corners.weights)
-    if not (hubs.points or hubs.directions or hubs.rows):
+    if not (hubs.points or hubs.directions or hubs.known):
         return found
     rounded = corners.points()
     for point, ids in hubs.points.items():
@@ -58,8 +57,7 @@ def ties_at_hubs(instance: Instance, roots: Roots, hubs: Hubs) -> Ties:
         for corner in np.flatnonzero(near).tolist():
             if same_direction(corners.exact[corner], direction):
                 found |= set(_ties(instance, roots, corner, hubs.directions.get(direction, ())))
-                rows = ties_of_rows(instance, hubs.rows.get(direction, ()))
-                found |= {(corner, *row) for row in rows}
+                found |= {(corner, *row) for row in hubs.known.get(direction, ())}
     return found
 
 
@@ -125,8 +123,11 @@ def _forms(instance: Instance, k: int, p: RationalPoint) -> tuple[Fraction, Frac
 
 
 def tie_arrays(ties: Ties, corners: int) -> tuple[Ints, Ints]:
-    """First row of each corner (corners + 1,), and rows (i, j, which)."""
-    rows = sorted(ties)
+    """First row of each corner (corners + 1,), and rows (i, j, which), i < j, sorted."""
+    merged: dict[tuple[int, int, int], int] = {}
+    for corner, i, j, which in ties:
+        merged[corner, i, j] = merged.get((corner, i, j), 0) | which
+    rows = sorted((*key, which) for key, which in merged.items())
     first = np.searchsorted([row[0] for row in rows], np.arange(corners + 1))
     flat = np.array([row[1:] for row in rows], dtype=np.int64).reshape(-1, 3)
     return first.astype(np.int64), flat
