@@ -9,6 +9,9 @@ corner of the root triangles, at which all ties are known, and everything is sub
 * at infinity, directions d with |d × v| = |d × w| for two segments' vectors v, w; and, for segments
   with the same vector v (up to sign) whose middles differ by δ, those that halve the angle between
   v and δ or are perpendicular to that: F then vanishes to second order at infinity.
+
+Of rows of equal segments, where such directions are irrational as a rule, the latter are known
+before (:mod:`harness.diagram.fast.rows`).
 """
 
 from __future__ import annotations
@@ -125,7 +128,8 @@ def _cut(roots: Roots, leaves: Leaves, row: int, hubs: Hubs) -> RationalPoint | 
             continue
         p, q = roots.corners.exact[a], roots.corners.exact[b]
         if p not in hubs.cuts and q not in hubs.cuts:
-            cut = between(*sorted((p, q)), free_number(3, 1))
+            low, high = sorted((p, q))
+            cut = between(low, high, free_number(3, 1))
             hubs.cuts.add(cut)
             return cut
     return None
