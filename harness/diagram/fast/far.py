@@ -17,6 +17,7 @@ from harness.diagram.fast.line_points import TINY
 from harness.diagram.fast.lines import Lines
 from harness.diagram.fast.plane import turn_key, turns_left
 from harness.diagram.fast.roots import Floats, Ints, between, free_number
+from harness.diagram.fast.rows import are_apart
 from harness.diagram.planar_map import RationalPoint
 from harness.diagram.work import Contradiction
 
@@ -83,6 +84,8 @@ def _chain(
     chain = [start[1]]
     for (d, _, one), (e, number, two) in pairwise([*found, stop]):
         if one and two:
+            if len(found) > 1 and not are_apart(d, e):
+                raise Contradiction("two directions at infinity are too close")
             free = between(d, e, free_number(5 + len(chain), seed))
             if not (turns_left(d, free) and turns_left(free, e)):
                 raise Contradiction("no room for a free direction")

@@ -155,6 +155,20 @@ def coefficients(tables, i, j, si, sj):
 
 
 @compiled
+def _tie_of(i, j, low, high, ties):
+    """What is known of a pair i < j among the sorted rows ``low`` … ``high`` − 1 of ties."""
+    while low < high:
+        middle = (low + high) // 2
+        if ties[middle, 0] < i or (ties[middle, 0] == i and ties[middle, 1] < j):
+            low = middle + 1
+        elif ties[middle, 0] == i and ties[middle, 1] == j:
+            return ties[middle, 2]
+        else:
+            high = middle
+    return 0
+
+
+@compiled
 def relation(i, j, classes, tie_first, ties, spots):
     """What is known by construction about the pair i, j over a triangle, as bits.
 
@@ -168,13 +182,11 @@ def relation(i, j, classes, tie_first, ties, spots):
     bits = 1 if classes[i] >= 0 and classes[i] == classes[j] else 0
     for k in range(3):
         if spots[k] >= 0:
-            for row in range(tie_first[spots[k]], tie_first[spots[k] + 1]):
-                if (ties[row, 0] == i and ties[row, 1] == j) or (
-                    ties[row, 0] == j and ties[row, 1] == i
-                ):
-                    which = ties[row, 2]
-                    bits |= (which & 1) << (k + 1) | (which >> 1 & 1) << (k + 4)
-                    bits |= (which >> 2 & 1) << (k + 7) | (which >> 3 & 1) << (k + 10)
+            which = _tie_of(
+                min(i, j), max(i, j), tie_first[spots[k]], tie_first[spots[k] + 1], ties
+            )
+            bits |= (which & 1) << (k + 1) | (which >> 1 & 1) << (k + 4)
+            bits |= (which >> 2 & 1) << (k + 7) | (which >> 3 & 1) << (k + 10)
     return bits
 
 

@@ -9,6 +9,9 @@ corner of the root triangles, at which all ties are known, and everything is sub
 * at infinity, directions d with |d × v| = |d × w| for two segments' vectors v, w; and, for segments
   with the same vector v (up to sign) whose middles differ by δ, those that halve the angle between
   v and δ or are perpendicular to that: F then vanishes to second order at infinity.
+
+Of rows of equal segments, where such directions are irrational as a rule, the latter are known
+before (:mod:`harness.diagram.fast.rows`).
 """
 
 from __future__ import annotations
@@ -17,16 +20,17 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import combinations
-from math import isqrt
 from typing import Any
 
 from flint import arb, ctx
 
+from harness.diagram.fast.arranged import ArrangedCorners
 from harness.diagram.fast.build import Leaves, exact_corners, open_rows
 from harness.diagram.fast.decisions import enclosed, exact_cubic, exact_forms, homogeneous_corners
 from harness.diagram.fast.leaves import EMPTY, HARD
 from harness.diagram.fast.plane import turns_left
-from harness.diagram.fast.roots import Roots
+from harness.diagram.fast.roots import Roots, between, free_number
+from harness.diagram.fast.rows import FarTies, halving_directions, normalised, square_root, vector
 from harness.diagram.planar_map import RationalPoint
 from harness.geometry.instance import Instance
 from harness.geometry.predicates import orientation
@@ -39,10 +43,20 @@ FEWEST = 4
 
 @dataclass
 class Hubs:
-    """Known hubs and the segments of the leaf each was found in: points, and directions."""
+    """Known hubs and the segments of the leaf each was found in: points, and directions.
+
+    ``cuts``: the points among them at which a side was cut.  ``known``: ties in directions that are
+    known from the beginning.
+    """
 
     points: dict[RationalPoint, list[int]] = field(default_factory=dict)
     directions: dict[RationalPoint, list[int]] = field(default_factory=dict)
+    cuts: set[RationalPoint] = field(default_factory=set)
+    known: FarTies = field(default_factory=dict)
+
+    def all_directions(self) -> list[RationalPoint]:
+        """The directions, each once."""
+        return list(dict.fromkeys([*self.known, *self.directions]))
 
 
 def find_hubs(instance: Instance, roots: Roots, leaves: Leaves, sense: float, hubs: Hubs) -> bool:
@@ -59,17 +73,66 @@ def find_hubs(instance: Instance, roots: Roots, leaves: Leaves, sense: float, hu
             low, high = (_direction(corners[k]) for k in _in_order(far))
             for d in _directions(instance, ids):
                 if turns_left(low, d) and turns_left(d, high):
-                    size = max(abs(d[0]), abs(d[1]))
-                    hubs.directions.setdefault((d[0] / size, d[1] / size), ids)
-        elif not far and len(ids) >= 3:
-            exact = exact_corners(roots, leaves, row)
-            point = _crossing(instance, ids, exact)
-            if point is None and len(ids) >= FEWEST:
-                start = leaves.points[row].tolist()
-                point = _tie(instance, ids, exact, corners, start, sense)
+                    hubs.directions.setdefault(normalised(d), ids)
+        elif not far:
+            point = (
+                _tie_of_many(
+                    instance,
+                    ids,
+                    exact_corners(roots, leaves, row),
+                    corners,
+                    leaves.points[row].tolist(),
+                    sense,
+                )
+                if len(ids) >= 3
+                else None
+            )
+            if point is None:
+                point = _cut(roots, leaves, row, hubs)
             if point is not None:
                 hubs.points.setdefault(point, ids)
     return len(hubs.points) + len(hubs.directions) > before
+
+
+def _tie_of_many(
+    instance: Instance,
+    ids: list[int],
+    exact: list[RationalPoint],
+    corners: list[tuple[Any, Any, Any]],
+    start: list[float],
+    sense: float,
+) -> RationalPoint | None:
+    """A point inside a triangle where three lines meet or the best of four segments tie."""
+    point = _crossing(instance, ids, exact)
+    if point is None and len(ids) >= FEWEST:
+        point = _tie(instance, ids, exact, corners, start, sense)
+    return point
+
+
+def _cut(roots: Roots, leaves: Leaves, row: int, hubs: Hubs) -> RationalPoint | None:
+    """A point on the side of a root in which a leaf lies, away from the middle.
+
+    Between regularly spaced points an edge may pass through the middle of a side, which then is a
+    corner of two triangles that no halving resolves.  Only sides on lines of an arrangement are
+    cut, and those that have not been cut before.
+    """
+    if not isinstance(roots.corners, ArrangedCorners):
+        return None
+    weights = leaves.weights(row)
+    triangle = roots.triangles[leaves.shape_roots[row]].tolist()
+    for k in range(3):
+        a, b = triangle[k - 2], triangle[k - 1]
+        if sum(w[k] == 0 for w in weights) < 2 or not all(roots.corners.weights[[a, b]]):
+            continue
+        if not all(roots.corners.special[[a, b]]):
+            continue
+        p, q = roots.corners.exact[a], roots.corners.exact[b]
+        if p not in hubs.cuts and q not in hubs.cuts:
+            low, high = sorted((p, q))
+            cut = between(low, high, free_number(3, 1))
+            hubs.cuts.add(cut)
+            return cut
+    return None
 
 
 def _in_order(far: list[int]) -> tuple[int, int]:
@@ -82,18 +145,13 @@ def _direction(corner: tuple[Any, Any, Any]) -> RationalPoint:
     return Fraction(int(x.p), int(x.q)), Fraction(int(y.p), int(y.q))
 
 
-def _vector(instance: Instance, k: int) -> RationalPoint:
-    a, b = instance.rational_segment(k)
-    return b[0] - a[0], b[1] - a[1]
-
-
 def _directions(instance: Instance, ids: list[int]) -> Iterator[RationalPoint]:
     """Directions at infinity at which two of some segments tie without being parallel to them."""
-    vectors = {k: _vector(instance, k) for k in ids}
+    vectors = {k: vector(instance, k) for k in ids}
     for i, j in combinations(ids, 2):
         v, w = vectors[i], vectors[j]
         if v in (w, (-w[0], -w[1])):
-            yield from _halving(instance, i, j)
+            yield from halving_directions(v, _between_middles(instance, i, j), square_root)
             continue
         for sign in (1, -1):
             d = (v[0] + sign * w[0], v[1] + sign * w[1])
@@ -101,32 +159,10 @@ def _directions(instance: Instance, ids: list[int]) -> Iterator[RationalPoint]:
             yield -d[0], -d[1]
 
 
-def _halving(instance: Instance, i: int, j: int) -> Iterator[RationalPoint]:
-    """The directions that halve the angles between two equal segments and the line of their
-    middles, if they are rational."""
+def _between_middles(instance: Instance, i: int, j: int) -> RationalPoint:
+    """Twice the difference of two segments' middles."""
     (a, b), (c, d) = instance.rational_segment(i), instance.rational_segment(j)
-    v = (b[0] - a[0], b[1] - a[1])
-    delta = (a[0] + b[0] - c[0] - d[0], a[1] + b[1] - c[1] - d[1])
-    if v[0] * delta[1] == v[1] * delta[0]:  # on one line, or with one middle
-        yield -v[1], v[0]
-        yield v[1], -v[0]
-        return
-    root = _square_root((v[0] ** 2 + v[1] ** 2) * (delta[0] ** 2 + delta[1] ** 2))
-    if root is None:
-        return
-    # |δ| v ± |v| δ, up to a factor |v|.
-    for sign in (1, -1):
-        scale = v[0] ** 2 + v[1] ** 2
-        x, y = (root * v[0] + sign * scale * delta[0], root * v[1] + sign * scale * delta[1])
-        if x or y:
-            yield x, y
-            yield -x, -y
-
-
-def _square_root(value: Fraction) -> Fraction | None:
-    """The rational square root, if there is one."""
-    p, q = isqrt(value.numerator), isqrt(value.denominator)
-    return Fraction(p, q) if p * p == value.numerator and q * q == value.denominator else None
+    return a[0] + b[0] - c[0] - d[0], a[1] + b[1] - c[1] - d[1]
 
 
 def _inside(p: RationalPoint, corners: list[RationalPoint]) -> bool:

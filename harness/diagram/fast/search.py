@@ -10,6 +10,7 @@ from harness.diagram.fast.hubs import Hubs, find_hubs
 from harness.diagram.fast.plane import plane_roots
 from harness.diagram.fast.prepare import Prepared
 from harness.diagram.fast.roots import Roots
+from harness.diagram.fast.rows import ties_at_infinity
 from harness.diagram.fast.ties import Ties, tie_arrays, ties_at_corners, ties_at_hubs
 from harness.diagram.work import Contradiction, Hopeless
 from harness.geometry.kernel import Kernel
@@ -34,7 +35,7 @@ def search(
     become special corners, and everything is subdivided anew.  Raises Contradiction if that does
     not end, Hopeless if the halving does not: where three segments tie along a curve, for one.
     """
-    hubs = Hubs()
+    hubs = Hubs(known=ties_at_infinity(prepared.instance) if domain == "plane" else {})
     sense = 1.0 if objective == "smallest" else -1.0
     for _ in range(ROUNDS):
         roots, spans = _roots(prepared, domain, found, sense, seed, hubs)
@@ -50,8 +51,8 @@ def _roots(
     points = list(hubs.points)
     if domain == "plane":
         if sense > 0:
-            return arranged_roots(prepared, seed, points, list(hubs.directions)), []
-        return plane_roots(prepared.instance, seed, points, list(hubs.directions)), []
+            return arranged_roots(prepared, seed, points, hubs.all_directions()), []
+        return plane_roots(prepared.instance, seed, points, hubs.all_directions()), []
     assert found is not None
     if domain == "kernel":
         return domains.kernel_roots(prepared.instance, found, seed, points)
@@ -71,7 +72,7 @@ def _settled(
     workers: int,
 ) -> tuple[Leaves, Ties]:
     """Leaves in which all ties at special corners are known, and these."""
-    ties: Ties = ties_at_hubs(prepared.instance, roots, hubs.points, hubs.directions)
+    ties: Ties = ties_at_hubs(prepared.instance, roots, hubs)
     definite = domain == "kernel"
     while True:
         first, rows = tie_arrays(ties, len(roots.corners.weights))

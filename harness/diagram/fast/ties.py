@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from fractions import Fraction
 from itertools import combinations
 
 import numpy as np
 
 from harness.diagram.fast.build import Leaves, open_rows
+from harness.diagram.fast.hubs import Hubs
 from harness.diagram.fast.plane import same_direction
 from harness.diagram.fast.prepare import Ints
 from harness.diagram.fast.roots import Roots
@@ -35,32 +36,28 @@ def ties_at_corners(instance: Instance, roots: Roots, leaves: Leaves) -> Ties:
     return {row for corner, ids in wanted.items() for row in _ties(instance, roots, corner, ids)}
 
 
-def ties_at_hubs(
-    instance: Instance,
-    roots: Roots,
-    points: Mapping[RationalPoint, list[int]],
-    directions: Mapping[RationalPoint, list[int]],
-) -> Ties:
-    """Ties at hubs, between the segments of the leaves in which they were found."""
+def ties_at_hubs(instance: Instance, roots: Roots, hubs: Hubs) -> Ties:
+    """Ties at hubs, between the segments of the leaves in which they were found, and known ones."""
     found: Ties = set()
-    if not points and not directions:
-        return found
     corners = roots.corners
     weights = np.array(corners.weights)
+    if not (hubs.points or hubs.directions or hubs.known):
+        return found
     rounded = corners.points()
-    for known, finite in ((points, True), (directions, False)):
-        for point, ids in known.items():
-            x, y = (float(c) for c in point)
-            if finite:
-                gap = np.abs(rounded - (x, y)).max(axis=1)
-                near = (gap <= 1e-9 * (1 + np.abs(rounded).max(axis=1))) & (weights != 0)
-            else:
-                along, across = rounded @ (x, y), rounded @ (-y, x)
-                near = (weights == 0) & (along > 0) & (np.abs(across) <= 1e-9 * along)
-            for corner in np.flatnonzero(near).tolist():
-                exact = corners.exact[corner]
-                if exact == point if finite else same_direction(exact, point):
-                    found |= set(_ties(instance, roots, corner, ids))
+    for point, ids in hubs.points.items():
+        gap = np.abs(rounded - [float(c) for c in point]).max(axis=1)
+        near = (gap <= 1e-9 * (1 + np.abs(rounded).max(axis=1))) & (weights != 0)
+        for corner in np.flatnonzero(near).tolist():
+            if corners.exact[corner] == point:
+                found |= set(_ties(instance, roots, corner, ids))
+    for direction in hubs.all_directions():
+        x, y = (float(c) for c in direction)
+        along, across = rounded @ (x, y), rounded @ (-y, x)
+        near = (weights == 0) & (along > 0) & (np.abs(across) <= 1e-9 * along)
+        for corner in np.flatnonzero(near).tolist():
+            if same_direction(corners.exact[corner], direction):
+                found |= set(_ties(instance, roots, corner, hubs.directions.get(direction, ())))
+                found |= {(corner, *row) for row in hubs.known.get(direction, ())}
     return found
 
 
@@ -126,8 +123,11 @@ def _forms(instance: Instance, k: int, p: RationalPoint) -> tuple[Fraction, Frac
 
 
 def tie_arrays(ties: Ties, corners: int) -> tuple[Ints, Ints]:
-    """First row of each corner (corners + 1,), and rows (i, j, which)."""
-    rows = sorted(ties)
+    """First row of each corner (corners + 1,), and rows (i, j, which), i < j, sorted."""
+    merged: dict[tuple[int, int, int], int] = {}
+    for corner, i, j, which in ties:
+        merged[corner, i, j] = merged.get((corner, i, j), 0) | which
+    rows = sorted((*key, which) for key, which in merged.items())
     first = np.searchsorted([row[0] for row in rows], np.arange(corners + 1))
     flat = np.array([row[1:] for row in rows], dtype=np.int64).reshape(-1, 3)
     return first.astype(np.int64), flat

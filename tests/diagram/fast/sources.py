@@ -168,6 +168,24 @@ def _grid(rng: Random, _: int) -> Plain:
     return "segments", tuple(made[: MOST_SEGMENTS + 1])
 
 
+def _equal(rng: Random, _: int) -> Plain:
+    """Equal segments on a lattice, with one vector or two, whose asymptotes are irrational."""
+    columns, rows = rng.choice([(3, 1), (1, 3), (4, 1), (3, 2), (2, 3), (2, 4), (3, 3)])
+    while True:
+        (ax, ay), (bx, by) = _point(rng, 4), _point(rng, 4)
+        vectors = [_point(rng, 2) for _ in range(rng.choice([1, 1, 2]))]
+        if rng.random() < 0.3:
+            vectors.append(turned(vectors[0], 1))
+        starts = [(x * ax + y * bx, x * ay + y * by) for x in range(columns) for y in range(rows)]
+        made = []
+        for x, y in starts:
+            dx, dy = rng.choice(vectors)
+            made.append(((x, y), (x + dx, y + dy)))
+        kept = disjoint_subset(made)
+        if ax * by != ay * bx and len(kept) >= 3:
+            return "segments", kept
+
+
 # --- floats and rationals ------------------------------------------------------------------------
 
 
@@ -289,6 +307,7 @@ SOURCES: Mapping[str, Source] = {
     "lattice-segments": _lattice_segments,
     "aligned": _aligned,
     "square-grid": _grid,
+    "equal": _equal,
     "rational": _rational,
     "nudged": _nudged,
     "far": _far,
