@@ -91,19 +91,28 @@ class Shapes:
     def curves(self) -> list[Points]:
         """The polyline of every edge from start to end, shape (m, 2).
 
-        Unbounded ends run on beyond everything else that is drawn.
+        Unbounded ends run on beyond everything else that is drawn, all of them equally far: so
+        those of one direction are ordered by angle as they are side by side.
         """
         tolerance = TOLERANCE * self.extent
-        return [self._extended(e, e.polyline(tolerance, self.window)) for e in self.diagram.edges]
+        curves = [e.polyline(tolerance, self.window) for e in self.diagram.edges]
+        farthest = max((float(np.abs(curve - self.middle).max()) for curve in curves), default=0.0)
+        reach = 4 * farthest + 100 * self.extent
+        return [
+            self._extended(e, curve, reach)
+            for e, curve in zip(self.diagram.edges, curves, strict=True)
+        ]
 
-    def _extended(self, edge: Edge, curve: Points) -> Points:
-        """The curve, its unbounded ends prolonged straight in the direction in which they leave."""
+    def _extended(self, edge: Edge, curve: Points, reach: float) -> Points:
+        """The curve, its unbounded ends prolonged straight in the direction in which they leave,
+        until they are ``reach`` away in it from the middle."""
         nodes = self.diagram.nodes
-        reach = 4 * float(np.abs(curve - self.middle).max()) + 100 * self.extent
         pieces = [curve]
         for node, end in ((edge.start, 0), (edge.end, -1)):
             if node is not None and nodes[node].kind == "infinity":
-                tip = curve[end] + reach * np.array(nodes[node].point)
+                direction = np.array(nodes[node].point)
+                along = float((curve[end] - self.middle) @ direction)
+                tip = curve[end] + (reach - along) * direction
                 pieces.insert(0 if end == 0 else len(pieces), tip[None])
         return np.concatenate(pieces)
 

@@ -79,9 +79,22 @@ def test_the_outlines_of_the_cells_tile_the_domain(diagram: PlanarMap) -> None:
         assert all(ring[:, 0].min() >= x0 and ring[:, 0].max() <= x1 for ring in rings), k
 
 
+#: Six edges leave side by side in two opposite directions, some sampled much farther than others.
+SIDE_BY_SIDE = [((-6, -2), (3, 1)), ((-7, 1), (2, 4)), ((1, 7), (7, 9))]
+
+
+def test_outlines_between_parallel_asymptotes_hold_their_points_only() -> None:
+    outlines_hold_their_points(build(Instance.from_arrays("segments", SIDE_BY_SIDE), "plane"))
+
+
 @settings(max_examples=40)
 @given(diagrams())
 def test_an_outline_holds_the_points_of_its_cell_and_no_others(diagram: PlanarMap) -> None:
+    outlines_hold_their_points(diagram)
+
+
+def outlines_hold_their_points(diagram: PlanarMap) -> None:
+    """Every witness lies in the outline of its cell and in no other."""
     shapes = Shapes(diagram, natural_window(diagram))
     x0, y0, x1, y1 = shapes.window
     outlines = [shapes.outlines(k) for k in range(len(diagram.cells))]
