@@ -75,38 +75,16 @@ def find_hubs(instance: Instance, roots: Roots, leaves: Leaves, sense: float, hu
                 if turns_left(low, d) and turns_left(d, high):
                     hubs.directions.setdefault(normalised(d), ids)
         elif not far:
-            point = (
-                _tie_of_many(
-                    instance,
-                    ids,
-                    exact_corners(roots, leaves, row),
-                    corners,
-                    leaves.points[row].tolist(),
-                    sense,
-                )
-                if len(ids) >= 3
-                else None
-            )
+            exact = exact_corners(roots, leaves, row)
+            point = _crossing(instance, ids, exact)
+            if point is None and len(ids) >= FEWEST:
+                start = leaves.points[row].tolist()
+                point = _tie(instance, ids, exact, corners, start, sense)
             if point is None:
                 point = _cut(roots, leaves, row, hubs)
             if point is not None:
                 hubs.points.setdefault(point, ids)
     return len(hubs.points) + len(hubs.directions) > before
-
-
-def _tie_of_many(
-    instance: Instance,
-    ids: list[int],
-    exact: list[RationalPoint],
-    corners: list[tuple[Any, Any, Any]],
-    start: list[float],
-    sense: float,
-) -> RationalPoint | None:
-    """A point inside a triangle where three lines meet or the best of four segments tie."""
-    point = _crossing(instance, ids, exact)
-    if point is None and len(ids) >= FEWEST:
-        point = _tie(instance, ids, exact, corners, start, sense)
-    return point
 
 
 def _cut(roots: Roots, leaves: Leaves, row: int, hubs: Hubs) -> RationalPoint | None:

@@ -97,10 +97,11 @@ def _ties_of_classes(
     (v, middles), (w, others) = one, two
     if abs(_cross(d, v)) != abs(_cross(d, w)):
         return
+    far = {k: _cross(d, vector(instance, k)) for ids in others.values() for k in ids}
     for i in _best(v, middles, d):
         li = _cross(d, vector(instance, i))
-        for j in (k for ids in others.values() for k in ids):
-            yield min(i, j), max(i, j), 1 if _cross(d, vector(instance, j)) == li else 2
+        for j, lj in far.items():
+            yield min(i, j), max(i, j), 1 if li == lj else 2
 
 
 def _best(

@@ -39,10 +39,10 @@ def ties_at_corners(instance: Instance, roots: Roots, leaves: Leaves) -> Ties:
 def ties_at_hubs(instance: Instance, roots: Roots, hubs: Hubs) -> Ties:
     """Ties at hubs, between the segments of the leaves in which they were found, and known ones."""
     found: Ties = set()
-    corners = roots.corners
-    weights = np.array(corners.weights)
     if not (hubs.points or hubs.directions or hubs.known):
         return found
+    corners = roots.corners
+    weights = np.array(corners.weights)
     rounded = corners.points()
     for point, ids in hubs.points.items():
         gap = np.abs(rounded - [float(c) for c in point]).max(axis=1)
