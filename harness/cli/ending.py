@@ -3,37 +3,15 @@
 from __future__ import annotations
 
 import contextlib
-import signal
-import threading
-from collections.abc import Iterator
-from types import FrameType
+from collections.abc import Callable
 
-ENDING = (signal.SIGTERM, signal.SIGHUP)
+from harness.study.interrupt import ENDING, handled
 
 
-@contextlib.contextmanager
-def tidily() -> Iterator[None]:
-    """Let SIGTERM and SIGHUP interrupt as Ctrl-C does, so that scratch files are removed.
-
-    A signal that is ignored (``nohup``) stays ignored; outside the main thread, where signals
-    cannot be caught, nothing changes.
-    """
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = {
-        number: handler
-        for number in ENDING
-        if (handler := signal.getsignal(number)) not in (signal.SIG_IGN, None)
-    }
-    for number in before:
-        signal.signal(number, _interrupt)
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
+def tidily() -> contextlib.AbstractContextManager[None]:
+    """Let SIGTERM and SIGHUP interrupt as Ctrl-C does, so that scratch files are removed."""
+    return handled(ENDING, _interrupt)
 
 
-def _interrupt(_number: int, _frame: FrameType | None) -> None:
+def _interrupt(_restore: Callable[[], None]) -> None:
     raise KeyboardInterrupt

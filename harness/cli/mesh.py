@@ -9,7 +9,6 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from harness.cli.ending import tidily
 from harness.cli.options import natural, positive
 from harness.cli.pictures import add_picture_options, picture_format, write_picture
 from harness.mesh.options import OBJECTIVES, REMEDIES, SWEEPS, TOPOLOGIES
@@ -131,6 +130,7 @@ def _register_draw(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -
 
 def improve(args: argparse.Namespace) -> int:
     """Improve a mesh; exit status 0."""
+    from harness.cli.ending import tidily
     from harness.mesh import read_mesh
     from harness.mesh.door import improve_mesh
     from harness.mesh.formats import check_target
