@@ -18,9 +18,9 @@ import numpy as np
 
 from harness.diagram.fast.jit import compiled
 from harness.diagram.fast.memory import borrowed, release
+from harness.diagram.fast.records import grown
 from harness.diagram.fast.roots import Floats, Ints
 from harness.diagram.fast.sifting import borrowed_work, borrowed_world, new_work, sift_box
-from harness.diagram.fast.subdivide import grown
 
 #: So many triangles share their candidates, and all do if there are so few candidates.
 TOGETHER, FEW = 16, 6

@@ -2,21 +2,9 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from harness.diagram.fast.double import sum_of
 from harness.diagram.fast.forms import coefficients
 from harness.diagram.fast.jit import compiled
-
-#: Neighbouring coefficients, and the corner opposite to the side along which they are.
-_STEPS_ALONG = np.array(
-    [
-        *([1, 6, 0], [6, 8, 0], [8, 2, 0], [3, 4, 0], [5, 9, 0], [9, 7, 0]),
-        *([2, 7, 1], [7, 4, 1], [4, 0, 1], [8, 9, 1], [9, 3, 1], [6, 5, 1]),
-        *([0, 3, 2], [3, 5, 2], [5, 1, 2], [4, 9, 2], [9, 6, 2], [7, 8, 2]),
-    ]
-)
-
 
 #: A cubic less than so many times its error bound is worth computing more precisely.
 WORN = 2.0**8
@@ -37,6 +25,13 @@ def _turns(c, k, tiny):
 
 
 @compiled
+def _steepest(s0, s1, s2, s3, m0, m1, m2, t0, t1):
+    """The greatest difference of neighbours in the rows of coefficients along one direction."""
+    side = max(max(abs(s0 - s1), abs(s1 - s2)), abs(s2 - s3))
+    return max(max(side, abs(t0 - t1)), max(abs(m0 - m1), abs(m1 - m2)))
+
+
+@compiled
 def side_to_halve(tables, norms, start, m, depth, lsign, factor):
     """The corner opposite to the side along which the contest varies most, and whether rounding
     blurs the contest.
@@ -44,11 +39,10 @@ def side_to_halve(tables, norms, start, m, depth, lsign, factor):
     The variation of F between the first candidate and some others, along each side, relative to
     its size.  Blurred: some F is near its error bound in the whole triangle.
     """
-    variation = np.zeros(3)
-    zeros, turning = np.zeros(3, np.int64), np.zeros(3, np.int64)
-    along = np.zeros(3)
-    pairs = 0
-    blurred = False
+    along_0 = along_1 = along_2 = 0.0
+    # Corners, a bit each: where all F vanish, and where some F changes sign with the direction.
+    zeros, turning = 7, 0
+    blurred, some = False, False
     for a in range(1, min(m, 6)):
         both = lsign[0] == 0 or lsign[a] == 0
         for sign in range(2 if both else 1):
@@ -60,33 +54,28 @@ def side_to_halve(tables, norms, start, m, depth, lsign, factor):
                 size = max(size, abs(c[r]))
             if size == 0.0:
                 continue
-            pairs += 1
+            some = True
             if size < WORN * factor * (
                 norms[start, 1] * norms[start + a, 0] + norms[start + a, 1] * norms[start, 0]
             ):
                 blurred = True
             for r in range(3):
-                if abs(c[r]) <= 1e-13 * size:
-                    zeros[r] += 1
-                    turning[r] += _turns(c, r, 1e-13 * size)
-            for r in range(18):
-                k = _STEPS_ALONG[r, 2]
-                step = abs(c[_STEPS_ALONG[r, 0]] - c[_STEPS_ALONG[r, 1]]) / size
-                along[k] = max(along[k], step)
-            for k in range(3):
-                variation[k] += along[k]
-                along[k] = 0.0
+                if abs(c[r]) > 1e-13 * size:
+                    zeros &= ~(1 << r)
+                elif _turns(c, r, 1e-13 * size):
+                    turning |= 1 << r
+            along_0 += _steepest(c[1], c[6], c[8], c[2], c[5], c[9], c[7], c[3], c[4]) / size
+            along_1 += _steepest(c[2], c[7], c[4], c[0], c[8], c[9], c[3], c[6], c[5]) / size
+            along_2 += _steepest(c[0], c[3], c[5], c[1], c[4], c[9], c[6], c[7], c[8]) / size
     # Where all tie at a corner and some F changes sign with the direction, its far side is halved
     # every second time: cutting across would repeat the same picture, smaller and smaller.
-    if depth & 1:
+    if depth & 1 and some:
         for k in range(3):
-            if pairs > 0 and zeros[k] == pairs and turning[k] > 0:
+            if zeros & turning & 1 << k:
                 return k, blurred
-    best = 0
-    for k in range(1, 3):
-        if variation[k] > variation[best]:
-            best = k
-    return best, blurred
+    if along_2 > along_0 and along_2 > along_1:
+        return 2, blurred
+    return (1 if along_1 > along_0 else 0), blurred
 
 
 @compiled

@@ -223,6 +223,8 @@ def never_both(f, g, bound_f, bound_g):
     coefficients is positive."""
     size_f = size_g = 0.0
     for c in range(10):
+        if f[c] <= 0.0 and g[c] <= 0.0:
+            return False
         size_f, size_g = max(size_f, abs(f[c])), max(size_g, abs(g[c]))
     if size_f == 0.0 or size_g == 0.0:
         return False

@@ -92,10 +92,10 @@ def examine(tables, norms, ids, start, m, factor, place, scene, desk):
             return m, tests, FAILED, 0, 0
     else:
         find_signs(tables, norms, start, m, factor, definite, work)
-    if m > 1 and _is_mixed(m, ids, start, lsign, world[0]):
+    if m > 1 and not definite and _is_mixed(m, ids, start, lsign, world[0]):
         tests += m * (m - 1)
         m = prune_pairs(tables, norms, ids, start, m, factor, far, work, world, spots)
-    if m > 1 and _is_mixed(m, ids, start, lsign, world[0]):
+    if m > 1 and not definite and _is_mixed(m, ids, start, lsign, world[0]):
         if m > 2 or qsign[0] == 0 or qsign[0] != qsign[1]:
             return m, tests, FAILED, 0, 0
         bound = factor * (

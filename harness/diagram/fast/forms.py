@@ -308,18 +308,19 @@ def surely_positive(tables, i, j, si, sj, bound, far, known):
 def cubic(tables, i, j, si, sj, bound, far, known, values, signs):
     """Coefficients and certain signs of Q_i sj L_j − Q_j si L_i."""
     computed = coefficients(tables, i, j, si, sj)
-    for c in range(10):
-        value = computed[c]
-        if value > bound:
-            signs[c] = 1
-        elif value < -bound:
-            signs[c] = -1
-        elif is_structural_zero(c, tables, i, j, si, sj, far, known):
-            signs[c] = 0
-            value = 0.0
-        else:
-            signs[c] = UNKNOWN
-        values[c] = value
+    some = False
+    for c in range(10):  # without branches: signs cannot be foreseen
+        sign = int(computed[c] > bound) - int(computed[c] < -bound)
+        values[c], signs[c] = computed[c], sign
+        some = some | (sign == 0)
+    if some:
+        for c in range(10):
+            if signs[c] != 0:
+                continue
+            if is_structural_zero(c, tables, i, j, si, sj, far, known):
+                values[c] = 0.0
+            else:
+                signs[c] = UNKNOWN
 
 
 @compiled

@@ -24,7 +24,8 @@ from harness.diagram.fast.leaves import (
     TRIPLE,
     TWO_ARCS,
 )
-from harness.diagram.fast.subdivide import DEEPEST, LEAF
+from harness.diagram.fast.records import LEAF
+from harness.diagram.fast.subdivide import DEEPEST
 
 
 @compiled

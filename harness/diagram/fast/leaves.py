@@ -128,13 +128,16 @@ def side_zero(values, k, rising):
     at_low, at_high = values[SIDES[k, 0]], values[SIDES[k, 3]]
     if not rising:
         at_low, at_high = -at_low, -at_high
-    middle, last = 0.5, 0
+    middle, before, last = 0.5, -1.0, 0
     for _ in range(60):
         # An end may be a structural zero: leave it by bisection.
         if at_low < 0.0 < at_high:
             middle = (low * at_high - high * at_low) / (at_high - at_low)
         if not (at_low < 0.0 < at_high and low < middle < high):
             middle = 0.5 * (low + high)
+        if abs(middle - before) < 1e-14:
+            break
+        before = middle
         value = side_value(values, k, middle)
         if not rising:
             value = -value
@@ -149,8 +152,6 @@ def side_zero(values, k, rising):
                 at_high *= 0.5
             last = -1
         else:
-            break
-        if high - low < 1e-15:
             break
     return middle
 

@@ -13,8 +13,8 @@ from harness.diagram.fast.counting import FastDiagram
 from harness.diagram.fast.jit import compiled
 from harness.diagram.fast.pieces import Whole, is_clear, owners, points_of_piece, whole
 from harness.diagram.fast.points import determinant, homogeneous
+from harness.diagram.fast.records import LEAF
 from harness.diagram.fast.roots import WALL
-from harness.diagram.fast.subdivide import LEAF
 from harness.diagram.planar_map import RationalPoint
 from harness.geometry.predicates import compare_visual_angles
 

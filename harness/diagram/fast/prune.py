@@ -21,6 +21,22 @@ def localise(norms, start, m, lam, share, first):
     are as much smaller.  If Q is zero at just one corner, |q(λ, λ')| ≤ MQ·(Σ λ_k + Σ λ'_k).
     """
     for bits in range(1, 8):
+        share[bits] = -1.0
+    for a in range(start, start + m):
+        norms[a, 0], norms[a, 1] = norms[a, first], norms[a, first + 1]
+        flags = int(norms[a, 4])
+        if flags == 0:
+            continue
+        norms[a, 0] *= _share_of(flags & 7, lam, share)
+        ends = flags >> 3
+        if ends == 1 or ends == 2 or ends == 4:
+            norms[a, 1] *= min(1.0, 2.0 * _share_of(ends, lam, share))
+
+
+@compiled
+def _share_of(bits, lam, share):
+    """The greatest Σ λ_k over the other corners of the root; ``share``: those known already."""
+    if bits and share[bits] < 0.0:
         most = 0.0
         for p in range(3):
             total = 0.0
@@ -29,13 +45,7 @@ def localise(norms, start, m, lam, share, first):
                     total += lam[3 * p + k]
             most = max(most, total)
         share[bits] = most
-    for a in range(start, start + m):
-        flags = int(norms[a, 4])
-        norms[a, 0] = norms[a, first] * share[flags & 7]
-        ends = flags >> 3
-        norms[a, 1] = norms[a, first + 1]
-        if ends == 1 or ends == 2 or ends == 4:
-            norms[a, 1] *= min(1.0, 2.0 * share[ends])
+    return share[bits]
 
 
 @compiled

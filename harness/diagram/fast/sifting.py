@@ -8,7 +8,7 @@ from harness.diagram.fast.forms import error_factor
 from harness.diagram.fast.jit import compiled
 from harness.diagram.fast.memory import borrowed, release
 from harness.diagram.fast.prune import prune
-from harness.diagram.fast.subdivide import grown
+from harness.diagram.fast.records import grown
 from harness.diagram.fast.tables import root_table
 
 

@@ -20,23 +20,30 @@ from harness.diagram.fast.forms import halve
 from harness.diagram.fast.jit import compiled
 from harness.diagram.fast.leaves import EMPTY, FAILED, HARD
 from harness.diagram.fast.memory import borrowed, release
+from harness.diagram.fast.records import (
+    enlarged,
+    finished,
+    grown,
+    is_full,
+    lent,
+    new_records,
+    record_halving,
+    record_leaf,
+    room_of,
+)
 from harness.diagram.fast.tables import root_table
 
-LEAF = 3
 #: A triangle is the result of so many halvings at most, else it is handed over as hard.
 DEEPEST = 400
 #: After so many halvings without losing a candidate a triangle is handed over as hard.
 PATIENCE = 200
 
-
-@compiled
-def grown(array, needed):
-    """``array`` with room for ``needed`` rows, contents kept."""
-    if needed <= len(array):
-        return array
-    bigger = np.empty((max(needed, 2 * len(array)), *array.shape[1:]), array.dtype)
-    bigger[: len(array)] = array
-    return bigger
+#: Columns of a frame, a triangle that waits: first candidate, number of them, halvings so far, how
+#: many of the last without losing a candidate, corners at infinity, only in double-double.
+START, NUMBER, DEPTH, IDLE, FAR, IS_FINE = range(6)
+#: Statistics: triangles, tests, hard leaves, open leaves, leaves in double-double, whether a root
+#: had too many triangles.
+TRIANGLES, TESTS, HARD_LEAVES, OPEN_LEAVES, FINE_LEAVES, TOO_MANY = range(6)
 
 
 @compiled
@@ -77,6 +84,126 @@ def _root_tables(
         )
         norms[a, 4] = zeros + 8 * ends
         norms[a, 5] = a
+
+
+@compiled
+def _first_frame(path, m, far, spare, tables, frames, small):
+    """The part of a root at the end of ``path`` as the only frame; ``spare``: a free table."""
+    waiting, corners, exponents = frames
+    _, e, lam = small
+    exponents[0] = 0
+    corners[0] = 0.0
+    for k in range(3):
+        corners[0, 4 * k] = 1.0
+    for step in path:
+        lam[:] = corners[0]
+        e[:] = exponents[0]
+        half_of(lam, e, step >> 1, step & 1, corners[0], exponents[0])
+        for a in range(m):
+            halve(tables, a, step >> 1, spare)
+            if step & 1 == 0:
+                tables[a] = tables[spare]
+    waiting[0] = 0
+    waiting[0, NUMBER], waiting[0, DEPTH], waiting[0, FAR] = m, len(path), far
+
+
+@compiled
+def _spot(triangle, k, e, lam, tie_first):
+    """The number of corner k among the corners of roots if ties are known there, else −1."""
+    if e[k] == 0:
+        for c in range(3):
+            corner = triangle[c]
+            if lam[3 * k + c] == 1.0 and tie_first[corner] < tie_first[corner + 1]:
+                return corner
+    return -1
+
+
+@compiled
+def _descend(
+    top,
+    root,
+    triangle,
+    lists,
+    frames,
+    records,
+    count,
+    small,
+    scene,
+    desk,
+    source,
+    limit,
+    statistics,
+):
+    """Look at the triangles on the stack until it is empty or room is short; what is left on it.
+
+    ``lists``: tables, norms and numbers of the candidates; ``frames``: the stack with its corners
+    and their exponents; ``limit``: triangles this root may come to.
+    """
+    tables, norms, ids = lists
+    waiting, corners, exponents = frames
+    spots, e, lam = small
+    scratch = desk[2]
+    tie_first = scene[1][3]
+    rows, most_waiting, room = len(tables), len(waiting), room_of(records)
+    while top > 0:
+        top -= 1
+        start, had, depth = waiting[top, START], waiting[top, NUMBER], waiting[top, DEPTH]
+        if start + 2 * had > rows or top + 2 > most_waiting or is_full(room, count, had):
+            return top + 1
+        idle, far = waiting[top, IDLE], waiting[top, FAR]
+        for k in range(3):
+            e[k] = exponents[top, k]
+        for c in range(18):
+            lam[c] = corners[top, c]
+        for k in range(3):
+            spots[k] = _spot(triangle, k, e, lam, tie_first)
+        statistics[TRIANGLES] += 1
+        m, tests, kind, ports, choice, k, fine = look(
+            tables,
+            norms,
+            ids,
+            start,
+            had,
+            (depth, idle, waiting[top, IS_FINE] == 1),
+            (far, spots, e, lam, triangle),
+            scene,
+            desk,
+            source,
+        )
+        statistics[TESTS] += tests
+        idle = 0 if m < had else idle + 1
+        if kind == FAILED and statistics[TRIANGLES] > limit:
+            kind, statistics[TOO_MANY] = HARD, 1
+        if kind == FAILED and (
+            max(e[(k + 1) % 3], e[(k + 2) % 3]) >= FINEST
+            or depth >= DEEPEST
+            or (idle > PATIENCE and m <= 12)
+        ):
+            kind = HARD
+        if kind != FAILED:
+            record_leaf(records, count, (start, m), (kind, ports, choice), ids, scratch, lam, root)
+            statistics[FINE_LEAVES] += fine
+            if kind == HARD:
+                statistics[HARD_LEAVES] += 1
+            elif kind != EMPTY and choice < 0:
+                statistics[OPEN_LEAVES] += 1
+            continue
+        record_halving(records, count, k)
+        for a in range(start, start + m):
+            if not fine:
+                halve(tables, a, k, a + m)
+            for c in range(NORMS):
+                norms[a + m, c] = norms[a, c]
+            ids[a + m] = ids[a]
+        # The second half (P, M, R) below, the first (P, Q, M) on top of the stack.
+        for half in range(2):
+            second = half == 0
+            half_of(lam, e, k, second, corners[top], exponents[top])
+            waiting[top, START], waiting[top, NUMBER] = start + half * m, m
+            waiting[top, DEPTH], waiting[top, IDLE] = depth + 1, idle
+            waiting[top, FAR], waiting[top, IS_FINE] = far_of_half(far, k, second), fine
+            top += 1
+    return top
 
 
 @compiled
@@ -124,45 +251,30 @@ def subdivide(
         widest = max(widest, candidate_count[r])
     rows = 4 * widest + 64
     kept = (np.empty((rows, 9)), np.empty((rows, NORMS)), np.empty(rows, np.int64))
-    tables, norms, ids = borrowed(kept[0]), borrowed(kept[1]), borrowed(kept[2])
-    # Start, count, depth, patience, far, fine; corners and halvings behind them.
     kept_frames = (np.zeros((256, 6), np.int64), np.zeros((256, 18)), np.zeros((256, 3), np.int64))
-    frames, corners = borrowed(kept_frames[0]), borrowed(kept_frames[1])
-    exponents = borrowed(kept_frames[2])
+    records = new_records(widest)
+    count = np.zeros(7, np.int64)
     kept_root = (np.empty((widest, 20)), np.zeros(widest, np.bool_), np.empty((3, 4)), np.empty(3))
     of_root, known = borrowed(kept_root[0]), borrowed(kept_root[1])
     root_corners, root_weights = borrowed(kept_root[2]), borrowed(kept_root[3])
-    tokens = np.empty(1024, np.int8)
-    kinds = np.empty(512, np.int8)
-    choices = np.empty(512, np.int8)
-    slots = np.empty((1024, 2), np.int32)
-    first_slot = np.empty(513, np.int64)
-    shapes = np.empty((256, 9))
-    low_rows, lows = np.empty(16, np.int64), np.empty((16, 9))
-    points = np.empty((256, 2))
-    shape_roots = np.empty(256, np.int32)
-    open_first = np.empty(65, np.int64)
-    open_ids = np.empty(256, np.int64)
-    n_tokens = n_leaves = n_slots = n_shapes = n_lows = n_open = n_open_ids = 0
     kept_desk = new_desk(widest)
     desk = borrowed_desk(kept_desk)
-    scratch = desk[2]
     segments, triangles = borrowed(segments), borrowed(triangles)
-    special, tie_first = borrowed(special), borrowed(world[3])
+    lines, lengths, classes, tie_first, ties = world
     scene = (
         definite,
         (
-            borrowed(world[0]),
-            borrowed(world[1]),
-            borrowed(world[2]),
-            tie_first,
-            borrowed(world[4]),
+            borrowed(lines),
+            borrowed(lengths),
+            borrowed(classes),
+            borrowed(tie_first),
+            borrowed(ties),
         ),
-        special,
+        borrowed(special),
     )
     statistics = np.zeros(6, np.int64)
     kept_small = (np.empty(3, np.int64), np.empty(3, np.int64), np.empty(18))
-    spots, e, lam = borrowed(kept_small[0]), borrowed(kept_small[1]), borrowed(kept_small[2])
+    small = (borrowed(kept_small[0]), borrowed(kept_small[1]), borrowed(kept_small[2]))
     for root in order:
         m = candidate_count[root]
         far = 0
@@ -171,6 +283,8 @@ def subdivide(
             root_weights[k] = weights[triangles[root, k]]
             if root_weights[k] == 0.0:
                 far |= 1 << k
+        lists = (borrowed(kept[0]), borrowed(kept[1]), borrowed(kept[2]))
+        frames = (borrowed(kept_frames[0]), borrowed(kept_frames[1]), borrowed(kept_frames[2]))
         _root_tables(
             candidates[candidate_first[root] : candidate_first[root] + m],
             triangles[root],
@@ -181,153 +295,42 @@ def subdivide(
             root_weights,
             size,
             sense,
-            tables,
-            norms,
-            ids,
+            lists[0],
+            lists[1],
+            lists[2],
         )
         known[:] = False
         source = (segments, root_corners, root_weights, size, sense, of_root, known)
-        exponents[0] = 0
-        corners[0] = 0.0
-        for k in range(3):
-            corners[0, 4 * k] = 1.0
-        for step in path:
-            lam[:] = corners[0]
-            e[:] = exponents[0]
-            half_of(lam, e, step >> 1, step & 1, corners[0], exponents[0])
-            for a in range(m):
-                halve(tables, a, step >> 1, widest)
-                if step & 1 == 0:
-                    tables[a] = tables[widest]
-        frames[0, 0], frames[0, 1], frames[0, 2] = 0, m, len(path)
-        frames[0, 3], frames[0, 4], frames[0, 5] = 0, far, 0
-        before = statistics[0]
+        _first_frame(path, m, far, widest, lists[0], frames, small)
         # Where one root has failed, nothing is gained by more.
-        allowed = 0 if statistics[5] else most + 300 * m * m
+        limit = statistics[TRIANGLES] + (0 if statistics[TOO_MANY] else most + 300 * m * m)
         top = 1
         while top > 0:
-            top -= 1
-            start, m, depth = frames[top, 0], frames[top, 1], frames[top, 2]
-            patience, far = frames[top, 3], frames[top, 4]
-            e[:] = exponents[top]
-            lam[:] = corners[top]
-            for k in range(3):
-                spots[k] = -1
-                if e[k] == 0:
-                    for c in range(3):
-                        corner = triangles[root, c]
-                        if lam[3 * k + c] == 1.0 and tie_first[corner] < tie_first[corner + 1]:
-                            spots[k] = corner
-            place = (far, spots, e, lam, triangles[root])
-            statistics[0] += 1
-            had = m
-            m, tests, kind, ports, choice, k, fine = look(
-                tables,
-                norms,
-                ids,
-                start,
-                m,
-                (depth, patience, frames[top, 5] == 1),
-                place,
+            needed = frames[0][top - 1, START] + 2 * frames[0][top - 1, NUMBER]
+            kept = (grown(kept[0], needed), grown(kept[1], needed), grown(kept[2], needed))
+            kept_frames = (
+                grown(kept_frames[0], top + 1),
+                grown(kept_frames[1], top + 1),
+                grown(kept_frames[2], top + 1),
+            )
+            records = enlarged(records, count, widest)
+            lists = (borrowed(kept[0]), borrowed(kept[1]), borrowed(kept[2]))
+            frames = (borrowed(kept_frames[0]), borrowed(kept_frames[1]), borrowed(kept_frames[2]))
+            top = _descend(
+                top,
+                root,
+                triangles[root],
+                lists,
+                frames,
+                lent(records),
+                borrowed(count),
+                small,
                 scene,
                 desk,
                 source,
+                limit,
+                borrowed(statistics),
             )
-            statistics[1] += tests
-            patience = 0 if m < had else patience + 1
-            if kind == FAILED and statistics[0] - before > allowed:
-                kind, statistics[5] = HARD, 1
-            if kind == FAILED and (
-                max(e[(k + 1) % 3], e[(k + 2) % 3]) >= FINEST
-                or depth >= DEEPEST
-                or (patience > PATIENCE and m <= 12)
-            ):
-                kind = HARD
-            if n_tokens + 1 > len(tokens):
-                tokens = grown(tokens, n_tokens + 1)
-            if kind == FAILED:
-                tokens[n_tokens] = k
-                n_tokens += 1
-                needed = start + 2 * m
-                if needed > len(tables):
-                    kept = (grown(kept[0], needed), grown(kept[1], needed), grown(kept[2], needed))
-                    tables, norms, ids = borrowed(kept[0]), borrowed(kept[1]), borrowed(kept[2])
-                for a in range(m):
-                    if not fine:
-                        halve(tables, start + a, k, start + m + a)
-                    norms[start + m + a] = norms[start + a]
-                    ids[start + m + a] = ids[start + a]
-                if top + 2 > len(frames):
-                    kept_frames = (
-                        grown(kept_frames[0], top + 2),
-                        grown(kept_frames[1], top + 2),
-                        grown(kept_frames[2], top + 2),
-                    )
-                    frames, corners = borrowed(kept_frames[0]), borrowed(kept_frames[1])
-                    exponents = borrowed(kept_frames[2])
-                # The second half (P, M, R) below, the first (P, Q, M) on top of the stack.
-                for half in range(2):
-                    second = half == 0
-                    f = top + half
-                    half_of(lam, e, k, second, corners[f], exponents[f])
-                    frames[f, 0], frames[f, 1], frames[f, 2] = start + half * m, m, depth + 1
-                    frames[f, 3], frames[f, 5] = patience, fine
-                    frames[f, 4] = far_of_half(far, k, second)
-                top += 2
-                continue
-            tokens[n_tokens] = LEAF
-            n_tokens += 1
-            if n_leaves + 1 > len(kinds):
-                kinds, choices = grown(kinds, n_leaves + 1), grown(choices, n_leaves + 1)
-                first_slot = grown(first_slot, len(kinds) + 1)
-            kinds[n_leaves] = kind
-            choices[n_leaves] = choice
-            first_slot[n_leaves] = n_slots
-            n_leaves += 1
-            statistics[4] += fine
-            count = 0 if kind == HARD else max(ports, 1)
-            if n_slots + count > len(slots):
-                slots = grown(slots, n_slots + count)
-            for c in range(count):
-                slots[n_slots + c, 0] = scratch[4][c, 0]
-                slots[n_slots + c, 1] = ids[start + scratch[4][c, 1]]
-            n_slots += count
-            if kind != EMPTY:
-                if n_shapes + 1 > len(shapes):
-                    shapes, points = grown(shapes, n_shapes + 1), grown(points, n_shapes + 1)
-                    shape_roots = grown(shape_roots, n_shapes + 1)
-                shapes[n_shapes] = lam[:9]
-                if lam[9:].any():
-                    if n_lows + 1 > len(lows):
-                        low_rows, lows = grown(low_rows, n_lows + 1), grown(lows, n_lows + 1)
-                    low_rows[n_lows], lows[n_lows] = n_shapes, lam[9:]
-                    n_lows += 1
-                points[n_shapes] = scratch[6]
-                shape_roots[n_shapes] = root
-                n_shapes += 1
-                if kind == HARD or choice < 0:
-                    open_first = grown(open_first, n_open + 2)
-                    open_first[n_open] = n_open_ids
-                    open_ids = grown(open_ids, n_open_ids + m)
-                    open_ids[n_open_ids : n_open_ids + m] = ids[start : start + m]
-                    n_open_ids += m
-                    n_open += 1
-                    statistics[2 if kind == HARD else 3] += 1
-    first_slot[n_leaves] = n_slots
-    open_first[n_open] = n_open_ids
-    release(kept, kept_frames, kept_root, kept_desk, kept_small)
-    return (
-        tokens[:n_tokens].copy(),
-        kinds[:n_leaves].copy(),
-        choices[:n_leaves].copy(),
-        first_slot[: n_leaves + 1].copy(),
-        slots[:n_slots].copy(),
-        shapes[:n_shapes].copy(),
-        low_rows[:n_lows].copy(),
-        lows[:n_lows].copy(),
-        points[:n_shapes].copy(),
-        shape_roots[:n_shapes].copy(),
-        open_first[: n_open + 1].copy(),
-        open_ids[:n_open_ids].copy(),
-        statistics,
-    )
+    result = finished(records, count)
+    release(kept, kept_frames, kept_root, kept_desk, kept_small, records, count, statistics)
+    return (*result, statistics)

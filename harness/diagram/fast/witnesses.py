@@ -16,7 +16,8 @@ from harness.diagram.fast.leaves import EMPTY
 from harness.diagram.fast.pieces import Whole, between, is_clear, points_of_piece
 from harness.diagram.fast.points import exact_point
 from harness.diagram.fast.prepare import Floats, Ints
-from harness.diagram.fast.subdivide import DEEPEST, LEAF
+from harness.diagram.fast.records import LEAF
+from harness.diagram.fast.subdivide import DEEPEST
 from harness.diagram.planar_map import RationalPoint
 from harness.geometry.predicates import orientation
 
