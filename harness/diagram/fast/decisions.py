@@ -13,7 +13,7 @@ from fractions import Fraction
 from typing import Any
 
 import numpy as np
-from flint import arb, ctx, fmpq
+from flint import arb, ctx, fmpq, fmpz
 
 from harness.diagram.fast.build import Leaves
 from harness.diagram.fast.forms import STEPS, TERMS, value_and_gradient
@@ -25,6 +25,7 @@ from harness.geometry.instance import Instance
 PRECISIONS = (128, 384, 1152)
 #: Weights of the products in each coefficient, in thirds.
 _WEIGHTS = ((3,), (3,), (3,), (2, 1), (2, 1), (2, 1), (2, 1), (2, 1), (2, 1), (1, 1, 1))
+_TERMS = TERMS.tolist()
 _SQUARES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 
 
@@ -73,7 +74,10 @@ def homogeneous_corners(roots: Roots, leaves: Leaves, row: int) -> list[tuple[An
 def exact_forms(
     instance: Instance, segment: int, corners: list[tuple[Any, Any, Any]], sense: float
 ) -> list[Any]:
-    """The table of a segment, exactly, with L made positive in the triangle."""
+    """A positive multiple of a segment's table, in whole numbers, L made positive in the triangle.
+
+    Every F with this segment then is a positive multiple too, which changes no sign.
+    """
     (ax, ay), (bx, by) = (tuple(map(_rational, end)) for end in instance.rational_segment(segment))
     dx, dy = bx - ax, by - ay
     to_a = [(ax * w - x, ay * w - y) for x, y, w in corners]
@@ -85,18 +89,24 @@ def exact_forms(
         polar = to_a[k][0] * to_b[m][0] + to_a[k][1] * to_b[m][1]
         polar += to_a[m][0] * to_b[k][0] + to_a[m][1] * to_b[k][1]
         table.append(int(sense) * polar / 2)
-    return table
+    common = fmpz(1)
+    for value in table:
+        common = common.lcm(value.q)
+    return [value.p * (common // value.q) for value in table]
 
 
 def exact_cubic(t: list[Any], s: list[Any]) -> list[Any]:
-    """The ten coefficients of Q_t L_s − Q_s L_t, positive where the first segment wins."""
-    result = []
-    for c in range(10):
-        total = fmpq(0)
-        for weight, (q, line) in zip(_WEIGHTS[c], TERMS[c].tolist(), strict=False):
-            total += weight * (t[q] * s[line] - s[q] * t[line])
-        result.append(total / 3)
-    return result
+    """Three times the ten coefficients of Q_t L_s − Q_s L_t, positive where the first wins."""
+    return [
+        sum(
+            (
+                weight * (t[q] * s[line] - s[q] * t[line])
+                for weight, (q, line) in zip(weights, terms, strict=False)
+            ),
+            fmpz(0),
+        )
+        for weights, terms in zip(_WEIGHTS, _TERMS, strict=True)
+    ]
 
 
 def _quad(owners: list[int], forms: dict[int, list[Any]]) -> int:
@@ -125,26 +135,26 @@ def _saddle(owners: list[int], forms: dict[int, list[Any]], start: list[float]) 
 
 
 def _raised(g: list[Any]) -> list[Any]:
-    """The cubic Bernstein coefficients of a quadratic form 200, 020, 002, 110, 101, 011."""
+    """Three times the coefficients of a quadratic form 200, 020, 002, 110, 101, 011 as a cubic."""
     return [
-        g[0],
-        g[1],
-        g[2],
-        (g[0] + 2 * g[3]) / 3,
-        (g[0] + 2 * g[4]) / 3,
-        (g[1] + 2 * g[3]) / 3,
-        (g[1] + 2 * g[5]) / 3,
-        (g[2] + 2 * g[4]) / 3,
-        (g[2] + 2 * g[5]) / 3,
-        (g[3] + g[4] + g[5]) / 3,
+        3 * g[0],
+        3 * g[1],
+        3 * g[2],
+        g[0] + 2 * g[3],
+        g[0] + 2 * g[4],
+        g[1] + 2 * g[3],
+        g[1] + 2 * g[5],
+        g[2] + 2 * g[4],
+        g[2] + 2 * g[5],
+        g[3] + g[4] + g[5],
     ]
 
 
 def _doubles(cubic: list[Any]) -> Any:
     """Coefficients as doubles, relatively to the greatest."""
-    exact = [Fraction(int(c.p), int(c.q)) for c in cubic]
-    largest = max(map(abs, exact)) or Fraction(1)
-    return np.array([float(c / largest) for c in exact])
+    whole = [int(c) for c in cubic]
+    largest = max(map(abs, whole)) or 1
+    return np.array([c / largest for c in whole])
 
 
 def _sign_where_both_vanish(f: list[Any], g: list[Any], h: list[Any], x: float, y: float) -> int:

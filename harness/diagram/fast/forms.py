@@ -315,12 +315,10 @@ def cubic(tables, i, j, si, sj, bound, far, known, values, signs):
         some = some | (sign == 0)
     if some:
         for c in range(10):
-            if signs[c] != 0:
-                continue
-            if is_structural_zero(c, tables, i, j, si, sj, far, known):
-                values[c] = 0.0
-            else:
+            if signs[c] == 0 and not is_structural_zero(c, tables, i, j, si, sj, far, known):
                 signs[c] = UNKNOWN
+            elif signs[c] == 0:
+                values[c] = 0.0
 
 
 @compiled

@@ -24,6 +24,7 @@ from harness.diagram.fast.leaves import (
     TRIPLE,
     TWO_ARCS,
 )
+from harness.diagram.fast.memory import borrowed, release
 from harness.diagram.fast.records import LEAF
 from harness.diagram.fast.subdivide import DEEPEST
 
@@ -221,11 +222,12 @@ def glue_tree(
 
     Returns (position after its tokens, number of the next leaf), or (−1, leaf) at a contradiction.
     """
-    stack = np.empty((DEEPEST + 2, 3, 4), np.int64)
-    # Corner opposite to the halved side, halves done.
-    waiting = np.empty((DEEPEST + 2, 2), np.int64)
+    kept = (np.empty((DEEPEST + 2, 3, 4), np.int64), np.empty((DEEPEST + 2, 2), np.int64))
+    kept_sides = (np.empty(4, np.int64), np.empty(4, np.int64))
+    # Sides of triangles; corner opposite to the halved side, halves done.
+    stack, waiting = borrowed(kept[0]), borrowed(kept[1])
+    one, two = borrowed(kept_sides[0]), borrowed(kept_sides[1])
     depth = top = 0
-    one, two = np.empty(4, np.int64), np.empty(4, np.int64)
     while True:
         token = tokens[position]
         position += 1
@@ -241,9 +243,11 @@ def glue_tree(
             depth -= 1
             k = waiting[depth, 0]
             first, second = stack[top - 2], stack[top - 1]
-            if not _glue(first[1], second[2], following, previous, owner, parent, mate):
-                return -1, leaf
-            if not _concatenate(first[0], second[0], following, previous, owner, parent, one):
+            if not (
+                _glue(first[1], second[2], following, previous, owner, parent, mate)
+                and _concatenate(first[0], second[0], following, previous, owner, parent, one)
+            ):
+                release(kept, kept_sides)
                 return -1, leaf
             two[:] = first[2]
             first[k] = one
@@ -252,6 +256,7 @@ def glue_tree(
             top -= 1
         if depth == 0:
             sides[:] = stack[0]
+            release(kept, kept_sides)
             return position, leaf
         waiting[depth - 1, 1] = 1
 
@@ -277,6 +282,19 @@ def glue_all(
     ``roots`` (r,): number of each root, in the order of the tokens.  ``opposite`` (r, 3): 3·root +
     side on the other side, or −1 on the boundary.  Returns −1, or a leaf where something is wrong.
     """
+    following, previous, parent, mate = (
+        borrowed(following),
+        borrowed(previous),
+        borrowed(parent),
+        borrowed(mate),
+    )
+    tokens, kinds, first_slot, ports = (
+        borrowed(tokens),
+        borrowed(kinds),
+        borrowed(first_slot),
+        borrowed(ports),
+    )
+    place, owner, sides = borrowed(place), borrowed(owner), borrowed(sides)
     position = leaf = 0
     for root in roots:
         position, leaf = glue_tree(

@@ -31,6 +31,7 @@ from harness.diagram.fast.records import (
     record_leaf,
     room_of,
 )
+from harness.diagram.fast.sifting import borrowed_world
 from harness.diagram.fast.tables import root_table
 
 #: A triangle is the result of so many halvings at most, else it is handed over as hard.
@@ -260,18 +261,7 @@ def subdivide(
     kept_desk = new_desk(widest)
     desk = borrowed_desk(kept_desk)
     segments, triangles = borrowed(segments), borrowed(triangles)
-    lines, lengths, classes, tie_first, ties = world
-    scene = (
-        definite,
-        (
-            borrowed(lines),
-            borrowed(lengths),
-            borrowed(classes),
-            borrowed(tie_first),
-            borrowed(ties),
-        ),
-        borrowed(special),
-    )
+    scene = (definite, borrowed_world(world), borrowed(special))
     statistics = np.zeros(6, np.int64)
     kept_small = (np.empty(3, np.int64), np.empty(3, np.int64), np.empty(18))
     small = (borrowed(kept_small[0]), borrowed(kept_small[1]), borrowed(kept_small[2]))
