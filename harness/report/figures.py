@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -10,6 +12,7 @@ from matplotlib.markers import CARETUPBASE
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from harness.analysis import MODELS
+from harness.report.labels import plural
 from harness.report.style import (
     BLACK,
     BLUE,
@@ -209,9 +212,25 @@ STYLES = [
 ]
 
 
-def overview_height(curves: int) -> float:
-    """Inches: the axes, and a line of legend for each curve."""
-    return 3.3 + 0.17 * curves
+#: More curves than this are told apart by family only; the table below the figure names each.
+NAMED = 16
+
+
+def _names(labels: Iterable[str]) -> dict[str, str]:
+    """What the legend calls each curve: its label, or its family where there are very many."""
+    labels = sorted(set(labels))
+    if len(labels) <= NAMED:
+        return {label: label for label in labels}
+    families = [label.split(",")[0] for label in labels]
+    return {
+        label: f"{family}: {plural(families.count(family), 'curve')}, named in the table"
+        for label, family in zip(labels, families, strict=True)
+    }
+
+
+def overview_height(labels: Iterable[str]) -> float:
+    """Inches: the axes, and the lines of the legend."""
+    return 3.3 + 0.17 * len(set(_names(labels).values()))
 
 
 def overview(figure: Figure, table: pd.DataFrame) -> None:
@@ -222,10 +241,16 @@ def overview(figure: Figure, table: pd.DataFrame) -> None:
     positive = table[table["per_n"] > 0]
     axes.set_xscale("log")
     axes.set_yscale("log")
-    curves = list(positive.groupby("curve", sort=True))
-    for index, (label, curve) in enumerate(curves):
-        colour, marker, line = STYLES[index % len(STYLES)]
-        axes.plot(curve["n"], curve["per_n"], line, marker=marker, color=colour, label=label, ms=4)
+    names = _names(table["curve"])
+    entries = sorted(set(names.values()))
+    shown: set[str] = set()
+    for label, curve in positive.groupby("curve", sort=True):
+        name = names[str(label)]
+        colour, marker, line = STYLES[entries.index(name) % len(STYLES)]
+        (drawn,) = axes.plot(curve["n"], curve["per_n"], line, marker=marker, color=colour, ms=4)
+        if name not in shown:
+            drawn.set_label(name)
+            shown.add(name)
     _size_ticks(axes, sorted(set(table["n"])))
     if len(positive):
         low, high = positive["per_n"].min(), positive["per_n"].max()
@@ -237,7 +262,7 @@ def overview(figure: Figure, table: pd.DataFrame) -> None:
     axes.set_axisbelow(True)
     axes.set_xlabel("segments n")
     axes.set_ylabel("maximum vertices / n")
-    if curves:
+    if shown:
         top = -0.42 / 2.55
         axes.legend(loc="upper left", bbox_to_anchor=(0, top), handlelength=2.6, borderaxespad=0)
 

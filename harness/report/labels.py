@@ -35,6 +35,10 @@ def _label(key: Key, names: set[str]) -> str:
 
 def _description(key: Key) -> dict[str, str]:
     parameters = {name: plain(value) for name, value in key.parameters.items()}
+    if "noise" in parameters:  # one number, relative to a power of n: noise/n²
+        power = parameters.pop("noise_power", "0")
+        if float(parameters["noise"]) and power != "0":
+            parameters["noise"] += "/n" if power == "1" else f"/n{raised(power)}"
     rest = {"domain": key.domain, "objective": key.objective, "builder": key.builder}
     return {**parameters, **rest}
 

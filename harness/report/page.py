@@ -111,10 +111,9 @@ def method_facts() -> dict[str, str]:
 def _overviews(download: Download) -> Iterator[dict[str, str]]:
     table = tables.from_csv(download.text)
     for (domain, objective), part in table.groupby(["domain", "objective"], sort=True):
-        curves = len(set(part["curve"]))
         short = part.assign(curve=part["curve"].str.replace(f", {domain}", ""))  # all are
         document = render(
-            partial(figures.overview, table=short), 4.8, figures.overview_height(curves)
+            partial(figures.overview, table=short), 4.8, figures.overview_height(short["curve"])
         )
         name = f"overview-{domain}-{objective}"
         text = f"Maximum number of vertices per segment, {domain}, {objective} visual angle"

@@ -82,6 +82,24 @@ def test_the_overview_shows_the_stored_ratios(study: StudyGrowth) -> None:
     assert plotted <= numbers(text)
 
 
+def test_very_many_curves_are_named_by_family() -> None:
+    rows = [
+        {"curve": f"{family}, tilt = {k}", "n": n, "per_n": float(n + k)}
+        for family, curves in (("zigzag", 12), ("weave", 9))
+        for k in range(1, curves + 1)
+        for n in (8, 16)
+    ]
+    table = pd.DataFrame(rows)
+    figure = Figure(figsize=(4.8, figures.overview_height(table["curve"])))
+    figures.overview(figure, table)
+    (axes,) = figure.axes
+    assert len(axes.lines) == 21
+    named = [text.get_text().split(",")[0] for text in axes.get_legend().get_texts()]
+    assert sorted(named) == ["weave: 9 curves", "zigzag: 12 curves"]
+    few = table[table["curve"].str.startswith("weave")]
+    assert figures.overview_height(few["curve"]) > figures.overview_height(table["curve"])
+
+
 def test_tables_survive_the_way_through_text(study: StudyGrowth) -> None:
     for analysed in study.groups:
         for table in (tables.curves(analysed), tables.trials(analysed)):
