@@ -30,7 +30,14 @@ from harness.diagram.fast.decisions import enclosed, exact_cubic, exact_forms, h
 from harness.diagram.fast.leaves import EMPTY, HARD
 from harness.diagram.fast.plane import turns_left
 from harness.diagram.fast.roots import Roots, between, free_number
-from harness.diagram.fast.rows import FarTies, halving_directions, normalised, square_root, vector
+from harness.diagram.fast.rows import (
+    FarTies,
+    between_middles,
+    halving_directions,
+    normalised,
+    square_root,
+    vector,
+)
 from harness.diagram.planar_map import RationalPoint
 from harness.geometry.instance import Instance
 from harness.geometry.predicates import orientation
@@ -129,18 +136,12 @@ def _directions(instance: Instance, ids: list[int]) -> Iterator[RationalPoint]:
     for i, j in combinations(ids, 2):
         v, w = vectors[i], vectors[j]
         if v in (w, (-w[0], -w[1])):
-            yield from halving_directions(v, _between_middles(instance, i, j), square_root)
+            yield from halving_directions(v, between_middles(instance, i, j), square_root)
             continue
         for sign in (1, -1):
             d = (v[0] + sign * w[0], v[1] + sign * w[1])
             yield d
             yield -d[0], -d[1]
-
-
-def _between_middles(instance: Instance, i: int, j: int) -> RationalPoint:
-    """Twice the difference of two segments' middles."""
-    (a, b), (c, d) = instance.rational_segment(i), instance.rational_segment(j)
-    return a[0] + b[0] - c[0] - d[0], a[1] + b[1] - c[1] - d[1]
 
 
 def _inside(p: RationalPoint, corners: list[RationalPoint]) -> bool:

@@ -108,10 +108,22 @@ def _best(
     v: RationalPoint, middles: Mapping[RationalPoint, list[int]], d: RationalPoint
 ) -> list[int]:
     """The segments of a class that are extreme in the direction d at infinity."""
-    square, across = d[0] ** 2 + d[1] ** 2, _cross(d, v)
-    values = {m: square * _cross(v, m) + 2 * (m[0] * d[0] + m[1] * d[1]) * across for m in middles}
+    values = {m: contest_far(v, m, d) for m in middles}
     extremes = min(values.values()), max(values.values())
     return [k for m, ids in middles.items() if values[m] in extremes for k in ids]
+
+
+def contest_far(v: RationalPoint, delta: RationalPoint, d: RationalPoint) -> Fraction:
+    """F of two segments with the vector v in the direction d at infinity, to first order in w;
+    ``delta``: twice the difference of their middles."""
+    along = delta[0] * d[0] + delta[1] * d[1]
+    return (d[0] ** 2 + d[1] ** 2) * _cross(v, delta) + 2 * along * _cross(d, v)
+
+
+def between_middles(instance: Instance, i: int, j: int) -> RationalPoint:
+    """Twice the difference of two segments' middles."""
+    (a, b), (c, d) = instance.rational_segment(i), instance.rational_segment(j)
+    return a[0] + b[0] - c[0] - d[0], a[1] + b[1] - c[1] - d[1]
 
 
 def _cross(a: RationalPoint, b: RationalPoint) -> Fraction:

@@ -13,6 +13,7 @@ from harness.diagram.fast.hubs import Hubs
 from harness.diagram.fast.plane import same_direction
 from harness.diagram.fast.prepare import Ints
 from harness.diagram.fast.roots import Roots
+from harness.diagram.fast.rows import between_middles, contest_far, vector
 from harness.diagram.planar_map import RationalPoint
 from harness.geometry.instance import Instance
 
@@ -97,15 +98,11 @@ def _tie_far(instance: Instance, i: int, j: int, d: RationalPoint) -> int:
     middles, F is w·(|d|² (v × δ) + 2 (δ·d)(d × v)) to first order in w.  That F vanishes itself is
     known without ties then.
     """
-    (a, b), (c, e) = instance.rational_segment(i), instance.rational_segment(j)
-    v, w = (b[0] - a[0], b[1] - a[1]), (e[0] - c[0], e[1] - c[1])
+    v, w = vector(instance, i), vector(instance, j)
     li, lj = d[0] * v[1] - d[1] * v[0], d[0] * w[1] - d[1] * w[0]
     if v not in (w, (-w[0], -w[1])):
         return (1 if li == lj else 0) + (2 if li == -lj else 0)
-    delta = (a[0] + b[0] - c[0] - e[0], a[1] + b[1] - c[1] - e[1])
-    square = d[0] ** 2 + d[1] ** 2
-    along, across = delta[0] * d[0] + delta[1] * d[1], v[0] * delta[1] - v[1] * delta[0]
-    flat = li != 0 and square * across + 2 * along * li == 0
+    flat = li != 0 and contest_far(v, between_middles(instance, i, j), d) == 0
     return (4 if v == w else 8) if flat else 0
 
 
