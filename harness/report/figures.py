@@ -12,7 +12,6 @@ from matplotlib.markers import CARETUPBASE
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from harness.analysis import MODELS
-from harness.report.labels import plural
 from harness.report.style import (
     BLACK,
     BLUE,
@@ -223,8 +222,9 @@ def _names(labels: Iterable[str]) -> dict[str, str]:
         return {label: label for label in labels}
     families = [label.split(",")[0] for label in labels]
     return {
-        label: f"{family}: {plural(families.count(family), 'curve')}, named in the table"
+        label: f"{family}: {count} curves, named in the table" if count > 1 else label
         for label, family in zip(labels, families, strict=True)
+        for count in [families.count(family)]
     }
 
 

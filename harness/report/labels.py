@@ -17,17 +17,23 @@ def curve_labels(keys: Sequence[Key]) -> list[str]:
     The family, the parameters in which it differs from the study's other groups of that family,
     and domain, objective and builder where the study has more than one of them for it.
     """
+    short = _labels(keys, [_with_one_noise(_description(key)) for key in keys])
+    if len(set(short)) == len(set(keys)):
+        return short
+    return _labels(keys, [_description(key) for key in keys])
+
+
+def _labels(keys: Sequence[Key], descriptions: Sequence[dict[str, str]]) -> list[str]:
     varying: dict[str, set[str]] = defaultdict(set)
     for family in {key.family for key in keys}:
-        described = [_description(key) for key in keys if key.family == family]
+        described = [d for key, d in zip(keys, descriptions, strict=True) if key.family == family]
         for name in {name for description in described for name in description}:
             if len({str(description.get(name)) for description in described}) > 1:
                 varying[family].add(name)
-    return [_label(key, varying[key.family]) for key in keys]
+    return [_label(k, d, varying[k.family]) for k, d in zip(keys, descriptions, strict=True)]
 
 
-def _label(key: Key, names: set[str]) -> str:
-    described = _description(key)
+def _label(key: Key, described: dict[str, str], names: set[str]) -> str:
     parts = [f"{name} = {described[name]}" for name in key.parameters if name in names]
     parts += [described[name] for name in ("domain", "objective", "builder") if name in names]
     return ", ".join([key.family, *parts])
@@ -35,12 +41,18 @@ def _label(key: Key, names: set[str]) -> str:
 
 def _description(key: Key) -> dict[str, str]:
     parameters = {name: plain(value) for name, value in key.parameters.items()}
-    if "noise" in parameters:  # one number, relative to a power of n: noise/n²
-        power = parameters.pop("noise_power", "0")
-        if float(parameters["noise"]) and power != "0":
-            parameters["noise"] += "/n" if power == "1" else f"/n{raised(power)}"
     rest = {"domain": key.domain, "objective": key.objective, "builder": key.builder}
     return {**parameters, **rest}
+
+
+def _with_one_noise(description: dict[str, str]) -> dict[str, str]:
+    """A noise relative to a power of n as one: noise/n²."""
+    short = dict(description)
+    if "noise" in short:
+        power = short.pop("noise_power", "0")
+        if float(short["noise"]) and power != "0":
+            short["noise"] += "/n" if power == "1" else f"/n{raised(power)}"
+    return short
 
 
 def parameters(key: Key) -> str:

@@ -34,6 +34,8 @@ def test_noise_is_one_number_relative_to_a_power_of_n() -> None:
     ]
 
 
-def test_noise_of_no_effect_tells_nothing_apart() -> None:
-    keys = [key("zigzag", noise=0.0, noise_power=2, tilt=t) for t in (0.2, 0.5)]
+def test_the_power_of_no_noise_is_named_only_if_nothing_else_tells_apart() -> None:
+    keys = [key("zigzag", noise=0.0, noise_power=p, tilt=t) for p, t in ((2, 0.2), (3, 0.5))]
     assert curve_labels(keys) == ["zigzag, tilt = 0.2", "zigzag, tilt = 0.5"]
+    keys = [key("zigzag", noise=0.0, noise_power=p) for p in (2, 3)]
+    assert curve_labels(keys) == ["zigzag, noise_power = 2", "zigzag, noise_power = 3"]

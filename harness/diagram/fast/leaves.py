@@ -47,6 +47,8 @@ FAILED, EMPTY, ARC, TRIPLE, TWO_ARCS, QUAD, SADDLE, CROSSING, HARD = range(-1, 8
 #: For QUAD: 0 and 1 say which pair of pieces shares an edge; for SADDLE which pieces are one.
 OPEN, TIED = -1, 2
 MOST_PORTS = 12
+#: How closely the zero of a cubic on a side is looked for.
+NEAR = 1e-14
 
 
 @compiled
@@ -128,16 +130,15 @@ def side_zero(values, k, rising):
     at_low, at_high = values[SIDES[k, 0]], values[SIDES[k, 3]]
     if not rising:
         at_low, at_high = -at_low, -at_high
-    middle, before, last = 0.5, -1.0, 0
+    middle, last = 0.5, 0
     for _ in range(60):
         # An end may be a structural zero: leave it by bisection.
         if at_low < 0.0 < at_high:
             middle = (low * at_high - high * at_low) / (at_high - at_low)
         if not (at_low < 0.0 < at_high and low < middle < high):
             middle = 0.5 * (low + high)
-        if abs(middle - before) < 1e-14:
-            break
-        before = middle
+        # Not closer to either end: near the zero that brings the other end here at once.
+        middle = min(max(middle, low + NEAR), high - NEAR)
         value = side_value(values, k, middle)
         if not rising:
             value = -value
@@ -152,6 +153,8 @@ def side_zero(values, k, rising):
                 at_high *= 0.5
             last = -1
         else:
+            break
+        if high - low < 2.5 * NEAR:
             break
     return middle
 

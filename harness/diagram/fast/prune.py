@@ -35,7 +35,8 @@ def localise(norms, start, m, lam, share, first):
 
 @compiled
 def _share_of(bits, lam, share):
-    """The greatest Σ λ_k over the other corners of the root; ``share``: those known already."""
+    """The greatest Σ λ_k over the other corners of the root; ``share``: those known already, and 1
+    for none."""
     if bits and share[bits] < 0.0:
         most = 0.0
         for p in range(3):

@@ -2,7 +2,7 @@
 
 The arrays grow between two runs of the innermost loop, never in it: a compiled loop that may
 exchange an array counts references to it in every round, which costs more than the round's work.
-So there is always room for one more triangle, whatever it turns out to be.
+So before each triangle it is asked whether there is room for it, whatever it turns out to be.
 """
 
 from __future__ import annotations
@@ -13,10 +13,11 @@ from harness.diagram.fast.jit import compiled
 from harness.diagram.fast.leaves import EMPTY, HARD, MOST_PORTS
 from harness.diagram.fast.memory import borrowed
 
+#: The token of a leaf.
 LEAF = 3
 
 #: What is counted while records are written.
-TOKENS, LEAVES, SLOTS, SHAPES, LOWS, OPEN, OPEN_IDS = range(7)
+TOKENS, LEAVES, SLOTS, SHAPES, LOWS, OPENS, OPEN_IDS = range(7)
 
 
 @compiled
@@ -65,7 +66,7 @@ def enlarged(records, count, widest):
         grown(records[7], shapes),
         grown(records[8], lows),
         grown(records[9], lows),
-        grown(records[10], count[OPEN] + 2),
+        grown(records[10], count[OPENS] + 2),
         grown(records[11], count[OPEN_IDS] + widest),
     )
 
@@ -112,7 +113,7 @@ def is_full(room, count, m):
         or count[SLOTS] + MOST_PORTS > room[SLOTS]
         or count[SHAPES] + 1 > room[SHAPES]
         or count[LOWS] + 1 > room[LOWS]
-        or count[OPEN] + 2 > room[OPEN]
+        or count[OPENS] + 2 > room[OPENS]
         or count[OPEN_IDS] + m > room[OPEN_IDS]
     )
 
@@ -160,11 +161,11 @@ def record_leaf(records, count, leaf, found, ids, scratch, lam, root):
     count[SHAPES] += 1
     if kind == HARD or choice < 0:
         first = count[OPEN_IDS]
-        records[10][count[OPEN]] = first
+        records[10][count[OPENS]] = first
         for a in range(m):
             records[11][first + a] = ids[start + a]
         count[OPEN_IDS] += m
-        count[OPEN] += 1
+        count[OPENS] += 1
 
 
 @compiled
@@ -172,7 +173,7 @@ def finished(records, count):
     """Copies of the records, without the room that is left."""
     leaves, shapes, lows = count[LEAVES], count[SHAPES], count[LOWS]
     records[3][leaves] = count[SLOTS]
-    records[10][count[OPEN]] = count[OPEN_IDS]
+    records[10][count[OPENS]] = count[OPEN_IDS]
     return (
         records[0][: count[TOKENS]].copy(),
         records[1][:leaves].copy(),
@@ -184,6 +185,6 @@ def finished(records, count):
         records[9][:lows].copy(),
         records[6][:shapes].copy(),
         records[7][:shapes].copy(),
-        records[10][: count[OPEN] + 1].copy(),
+        records[10][: count[OPENS] + 1].copy(),
         records[11][: count[OPEN_IDS]].copy(),
     )

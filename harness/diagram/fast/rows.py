@@ -114,8 +114,11 @@ def _best(
 
 
 def contest_far(v: RationalPoint, delta: RationalPoint, d: RationalPoint) -> Fraction:
-    """F of two segments with the vector v in the direction d at infinity, to first order in w;
-    ``delta``: twice the difference of their middles."""
+    """Twice F of two segments with the vector v in the direction d at infinity, over w.
+
+    ``delta``: twice the difference of their middles.  Linear in it, so the contest of two segments
+    is the difference of what comes out for twice their middles.
+    """
     along = delta[0] * d[0] + delta[1] * d[1]
     return (d[0] ** 2 + d[1] ** 2) * _cross(v, delta) + 2 * along * _cross(d, v)
 

@@ -6,7 +6,8 @@ triangle (ten Bernstein coefficients of one sign) is dropped.  If few are left a
 a leaf (:mod:`harness.diagram.fast.classify`) it is recorded, otherwise a side is halved.
 
 The record of a root is a *token* per triangle in preorder, 0, 1, 2 for the corner opposite to the
-halved side or ``LEAF``, and the leaves in that order.  Candidates' tables lie on one stack.
+halved side or that of a leaf, and the leaves in that order (:mod:`harness.diagram.fast.records`).
+Candidates' tables lie on one stack.
 """
 
 from __future__ import annotations

@@ -27,6 +27,7 @@ from harness.diagram.fast.leaves import (
     has_two_zeros,
     hull_determinant,
     is_radial,
+    side_zero,
     sign_changes,
 )
 from tests.diagram.fast.exact_forms import CUBIC, bernstein, derivative, sign
@@ -308,3 +309,33 @@ def test_rays_from_a_double_zero(made: tuple[Doubtful, int]) -> None:
 def test_a_corner_without_a_double_zero_is_not_radial() -> None:
     signs = np.ones(10, np.int64)
     assert not any(is_radial(signs, corner) for corner in range(3))
+
+
+@example(magnitudes=[0.30199, 0.48954, 6.54e-6, 1.82e-15], signs=[1, 1], k=0, rising=True)
+@example(magnitudes=[1.0, 1e-18, 1e-18, 3e-15], signs=[-1, 1], k=1, rising=False)
+@given(
+    st.lists(st.floats(1e-18, 1.0), min_size=4, max_size=4),
+    st.lists(st.sampled_from([-1, 1]), min_size=2, max_size=2),
+    st.integers(0, 2),
+    st.booleans(),
+)
+def test_a_zero_on_a_side_is_found_however_different_its_ends(
+    magnitudes: list[float], signs: list[int], k: int, rising: bool
+) -> None:
+    """Its sign changes within 1e-12, or it is a rounding there."""
+    way = 1 if rising else -1
+    inner = [sign * m for sign, m in zip(signs, magnitudes[1:3], strict=True)]
+    side = [-way * magnitudes[0], *inner, way * magnitudes[3]]
+    values = np.zeros(10)
+    values[SIDES[k]] = side
+    found = side_zero(values, k, rising)
+
+    def exact(t: Fraction) -> Fraction:
+        a, b, c, d = map(Fraction, side)
+        s = 1 - t
+        return way * (s**3 * a + 3 * s * s * t * b + 3 * s * t * t * c + t**3 * d)
+
+    at = Fraction(found)
+    near = Fraction(1, 10**12)
+    changes = exact(max(at - near, Fraction(0))) <= 0 <= exact(min(at + near, Fraction(1)))
+    assert changes or abs(exact(at)) <= 16 * U * max(magnitudes)
