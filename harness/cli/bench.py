@@ -38,7 +38,11 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )
     parser.add_argument("what", metavar="WHAT", choices=BENCHMARKS, help=" or ".join(BENCHMARKS))
     parser.add_argument(
-        "--only", nargs="+", metavar="NAME", help="only these instances (default: all)"
+        "--only",
+        nargs="+",
+        action="extend",
+        metavar="NAME",
+        help="only these instances (default: all)",
     )
     parser.add_argument(
         "--quick", action="store_true", help="a few small instances instead, in some seconds"

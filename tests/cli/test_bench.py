@@ -79,7 +79,18 @@ def test_the_table_agrees_with_the_rows(monkeypatch, capsys, here: Path) -> None
 
 def test_a_part_is_measured_and_stored_elsewhere(monkeypatch, capsys, here: Path) -> None:
     use(monkeypatch, 3, 4, 5)
-    command = ["bench", "diagram", "--only", "s5", "s3", "--repeat", "1", "-o", str(here / "mine")]
+    command = [
+        "bench",
+        "diagram",
+        "--only",
+        "s5",
+        "--only",
+        "s3",
+        "--repeat",
+        "1",
+        "-o",
+        str(here / "mine"),
+    ]
     assert main(command) == 0
     table = pd.read_csv(here / "mine" / "rows.csv")
     assert table["instance"].tolist() == ["s3", "s5"]
