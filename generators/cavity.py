@@ -121,5 +121,5 @@ CAVITY = Family(
     source="typical Poisson–Delaunay vertex; Okabe et al. 2000, Rényi & Sulanke 1963",
     growth="unknown",
     build=cavity,
-    largest=2_000,
+    largest=5_000,
 )
