@@ -237,7 +237,7 @@ def test_the_numbers_of_the_answer_are_those_of_the_rows() -> None:
             if (row["n"], row["domain"]) == (n, domain) and row["family"] in families
         ]
 
-    random = ("star", "star-fat", "near-regular", "convex-circle", "convex-valtr")
+    random = ("star", "star-fat", "near-regular", "cavity", "convex-circle", "convex-valtr")
     few = vertices(4096, "kernel", *random)
     said = {
         r"([\d,]+) for the zigzag of 2,048 edges": max(vertices(2048, "kernel", "zigzag")),
