@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable
 
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.markers import CARETUPBASE
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
@@ -217,15 +219,20 @@ NAMED = 16
 
 def _names(labels: Iterable[str]) -> dict[str, str]:
     """What the legend calls each curve: its label, or its family where there are very many."""
-    labels = sorted(set(labels))
-    if len(labels) <= NAMED:
-        return {label: label for label in labels}
-    families = [label.split(",")[0] for label in labels]
+    names = {label: label for label in labels}
+    if len(names) <= NAMED:
+        return names
+    curves = Counter(map(_family, names))
     return {
-        label: f"{family}: {count} curves, named in the table" if count > 1 else label
-        for label, family in zip(labels, families, strict=True)
-        for count in [families.count(family)]
+        label: f"{family}: {curves[family]} curves, named in the table"
+        if curves[family := _family(label)] > 1
+        else label
+        for label in names
     }
+
+
+def _family(label: str) -> str:
+    return label.split(",")[0]
 
 
 def overview_height(labels: Iterable[str]) -> float:
@@ -243,14 +250,12 @@ def overview(figure: Figure, table: pd.DataFrame) -> None:
     axes.set_yscale("log")
     names = _names(table["curve"])
     entries = sorted(set(names.values()))
-    shown: set[str] = set()
+    shown: dict[str, Line2D] = {}
     for label, curve in positive.groupby("curve", sort=True):
         name = names[str(label)]
         colour, marker, line = STYLES[entries.index(name) % len(STYLES)]
         (drawn,) = axes.plot(curve["n"], curve["per_n"], line, marker=marker, color=colour, ms=4)
-        if name not in shown:
-            drawn.set_label(name)
-            shown.add(name)
+        shown.setdefault(name, drawn)
     _size_ticks(axes, sorted(set(table["n"])))
     if len(positive):
         low, high = positive["per_n"].min(), positive["per_n"].max()
@@ -264,7 +269,14 @@ def overview(figure: Figure, table: pd.DataFrame) -> None:
     axes.set_ylabel("maximum vertices / n")
     if shown:
         top = -0.42 / 2.55
-        axes.legend(loc="upper left", bbox_to_anchor=(0, top), handlelength=2.6, borderaxespad=0)
+        axes.legend(
+            list(shown.values()),
+            list(shown),
+            loc="upper left",
+            bbox_to_anchor=(0, top),
+            handlelength=2.6,
+            borderaxespad=0,
+        )
 
 
 def _ratio_ticks(low: float, high: float) -> list[float]:
