@@ -9,8 +9,10 @@ noise; beyond that no curve is continued.
 
 The exponent's interval is a percentile bootstrap over the replicates.  It knows nothing of the
 hypothesis being false or of sizes too small: the exponents of neighbouring sizes alone are
-there to show a drift.  Besides, the transition σ(n), the noise that leaves half of the
-vertices, has an exponent of its own, from least squares of ln σ on ln n.
+there to show a drift.  So a whole exponent is ruled out only if it lies outside all these intervals
+by more than they extend together.  Besides, the transition σ(n), the noise that leaves half of
+the vertices, has an exponent of its own, from least squares of ln σ on ln n; and so has the decay
+of the share with the noise where little is left.
 
 References
 ----------
@@ -47,6 +49,8 @@ LEAST_NOISES, LEAST_SIZES = 4, 2
 PLATEAU = 0.95
 #: The share of the predicted vertices that defines the transition.
 HALF = 0.5
+#: Where less of the predicted vertices is left, their decay is measured, at so many noises or more.
+REMNANT, LEAST_REMNANTS = 0.2, 3
 
 
 @dataclass(frozen=True)
@@ -84,7 +88,8 @@ class Collapse:
     the share; ``spreads`` that at each of ``HYPOTHESES``.  ``neighbours`` are the exponents
     from two neighbouring sizes alone, as (n, next n, estimate).  ``transition`` has, for each n
     whose curve crosses one half, the noise there; ``transition_exponent`` is a in σ ~ n^(−a), or
-    None if fewer than two do.
+    None if fewer than two do.  ``decay`` is a in share ~ ε^(−a) at the largest n, where the share
+    is below ``REMNANT``, or None if too few noises leave so little.
     """
 
     curves: tuple[Curve, ...]
@@ -94,12 +99,25 @@ class Collapse:
     neighbours: tuple[tuple[int, int, Estimate], ...]
     transition: tuple[tuple[int, Estimate], ...]
     transition_exponent: Estimate | None
+    decay: Estimate | None
 
     @property
     def drift(self) -> tuple[float, float]:
         """The least and the greatest end of the neighbours' intervals, and of the joint one."""
         every = [self.exponent, *(estimate for _, _, estimate in self.neighbours)]
         return min(one.low for one in every), max(one.high for one in every)
+
+    @property
+    def possible(self) -> tuple[float, float]:
+        """The drift, widened on either side by its own width: exponents that are not ruled out."""
+        low, high = self.drift
+        return 2 * low - high, 2 * high - low
+
+    @property
+    def is_consistent(self) -> bool:
+        """Whether the intervals of all pairs of neighbouring sizes have a number in common."""
+        low = max((one.low for *_, one in self.neighbours), default=0.0)
+        return low <= min((one.high for *_, one in self.neighbours), default=0.0)
 
 
 def curves(table: pd.DataFrame) -> list[Curve]:
@@ -165,6 +183,7 @@ def collapse(curves: Sequence[Curve], seed: int = 0) -> Collapse | None:
         tuple(spread(curves, medians, hypothesis) for hypothesis in HYPOTHESES),
         tuple(_neighbours(curves, draws)),
         *_transition(curves, draws),
+        _decay(curves[-1], [draw[-1] for draw in draws]),
     )
 
 
@@ -192,10 +211,26 @@ def _transition(
     table = tuple((curves[k].n, _estimate(found[k], scattered[k])) for k in found)
     if len(found) < LEAST_SIZES:
         return table, None
-    sizes = np.log([curves[k].n for k in found])
-    slope = (sizes - sizes.mean()) / ((sizes - sizes.mean()) ** 2).sum()
-    value = -float(np.log(list(found.values())) @ slope)
+    slope = _slope(np.log([curves[k].n for k in found]))
+    value = -float(slope @ np.log(list(found.values())))
     return table, _estimate(value, (-slope @ np.log(list(scattered.values()))).tolist())
+
+
+def _slope(places: Floats) -> Floats:
+    """The weights (k,) by which values at the places become the slope of least squares."""
+    centred = places - places.mean()
+    return np.asarray(centred / (centred**2).sum())
+
+
+def _decay(curve: Curve, draws: Sequence[Floats]) -> Estimate | None:
+    """The power of 1/noise by which the last vertices go; None if that is seen at few noises."""
+    some = np.array([sample.min() > 0 for sample in curve.samples])
+    remnant = some & (curve.median < REMNANT)
+    if remnant.sum() < LEAST_REMNANTS:
+        return None
+    slope = -_slope(np.log(curve.noise[remnant]))
+    scattered = [float(slope @ np.log(draw[remnant])) for draw in draws]
+    return _estimate(float(slope @ np.log(curve.median[remnant])), scattered)
 
 
 def crosses(noise: Floats, share: Floats, level: float = HALF) -> float | None:

@@ -83,7 +83,8 @@ class Claim:
     of the instance.  ``domain``: that of the diagram the claim is about, which both builders
     certify for the example that is shown, or None if it is about no diagram.  ``count``: how many
     instances by default.  ``series``: how counts grow, from the rows.  ``shrink``: whether the
-    example is made as small as possible.
+    example is made as small as possible.  ``beyond``: whether the reading says more than the
+    paper's words must, so that its failure is none of the paper's.
     """
 
     name: str
@@ -101,6 +102,7 @@ class Claim:
     count: int = 200
     series: Callable[[Sequence[Row]], list[Series]] | None = None
     shrink: bool = True
+    beyond: bool = False
 
     @property
     def sought(self) -> Outcome:

@@ -194,6 +194,7 @@ CLAIMS = (
             (cases.families(("segments", 4, {})), 0.3),
         ),
         check=check_one_cubic,
+        beyond=True,
         domain="plane",
         count=40,
     ),

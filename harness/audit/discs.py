@@ -216,6 +216,7 @@ CLAIMS = (
             ),
         ),
         check=check_intersection,
+        kind="growth",
         series=steps,
         shrink=False,
         count=60,

@@ -312,6 +312,7 @@ CLAIMS = (
         limits="A failure is final; it concerns the word, not the intention of the lemma.",
         cases=cases.lattice_stars(4, 5, 6),
         check=check_convex,
+        beyond=True,
         domain="kernel",
         count=120,
     ),

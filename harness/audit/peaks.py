@@ -256,6 +256,7 @@ CLAIMS = (
             ),
         ),
         check=check_parametric,
+        kind="growth",
         series=operations,
         shrink=False,
         count=100,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -75,7 +75,7 @@ def try_claim(
     claim: Claim, count: int, seed: int, workers: Workers
 ) -> tuple[Record, list[Row], Instance | None]:
     """Try one claim: its record, its rows and its example."""
-    instances = list(claim.cases(count, seed))
+    instances = distinct(claim.cases(count, seed))
     found = list(workers.findings(claim.check, instances))
     rows = [_row(claim, i, f) for i, f in zip(instances, found, strict=True)]
     tally = Tally.of(rows)
@@ -95,16 +95,22 @@ def try_claim(
     return record, rows, example
 
 
+def distinct(instances: Iterable[Instance]) -> list[Instance]:
+    """Without those that came before: two sources of a claim may make the same instance."""
+    first: dict[tuple[str, str | None, bytes], Instance] = {}
+    for instance in instances:
+        first.setdefault((instance.kind, instance.family, instance.floats.tobytes()), instance)
+    return list(first.values())
+
+
 def fits(series: Sequence[Series]) -> list[str]:
-    """Which families' counts leave a single growth model, as "counts fit n² (zigzag)"."""
+    """Which families' counts leave a single growth model, as "vertices fit n² (zigzag)"."""
     families: dict[str, list[str]] = {}
     for one in series:
         if one.is_single:
-            families.setdefault(one.verdict, []).append(one.family.partition(" ")[0])
-    return [
-        f"counts fit {label} ({', '.join(dict.fromkeys(names))})"
-        for label, names in families.items()
-    ]
+            what = f"{one.title} fit {one.verdict}"
+            families.setdefault(what, []).append(one.family.partition(" ")[0])
+    return [f"{what} ({', '.join(dict.fromkeys(names))})" for what, names in families.items()]
 
 
 def _row(claim: Claim, instance: Instance, finding: Finding) -> Row:

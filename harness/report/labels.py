@@ -112,6 +112,11 @@ def sizes(values: Sequence[float]) -> str:
     return f"{values[0]:g} … {values[-1]:g} ({len(values)} sizes)"
 
 
+def spread(least: int, most: int) -> str:
+    """1 … 30; one number if they are equal."""
+    return f"{least}" if least == most else f"{least} … {most}"
+
+
 def plural(count: int, noun: str, many: str = "") -> str:
     """1 task, 2 tasks; ``many`` where an s is not enough."""
     return f"{count} {noun}" if count == 1 else f"{count} {many or noun + 's'}"

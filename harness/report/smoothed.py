@@ -10,6 +10,7 @@ import pandas as pd
 
 from harness.analysis.smoothed import (
     HYPOTHESES,
+    REMNANT,
     Collapse,
     Estimate,
     collapse,
@@ -18,7 +19,7 @@ from harness.analysis.smoothed import (
 from harness.analysis.smoothed import curves as noise_curves
 from harness.analysis.weave_rows import SHAPES
 from harness.report import tables, weave_figures
-from harness.report.labels import bracket, number
+from harness.report.labels import bracket, number, percent
 from harness.report.parts import Figure, Part
 from harness.report.sections import Cell, Download, Table, cell
 from harness.report.style import render
@@ -127,21 +128,36 @@ def _sentences(found: Collapse) -> Iterator[str]:
         f"functions of ε·nᵃ with a = {_shown(found.exponent)}; what then remains between them is "
         f"{number(100 * found.spread)} % of the predicted vertices (root mean square)."
     )
-    low, high = found.drift
     pairs = "; ".join(f"{n} and {other}: {_shown(e)}" for n, other, e in found.neighbours)
-    yield f"From neighbouring sizes alone, a is, for {pairs}."
+    differ = (
+        ""
+        if found.is_consistent
+        else (
+            " These intervals do not agree with each other: they know the scatter of replicates, "
+            "but not that at small n the number of passings grows by steps."
+        )
+    )
+    yield f"From neighbouring sizes alone, a is, for {pairs}.{differ}"
+    low, high = found.possible
     outside = [f"{a:g}" for a in HYPOTHESES if not low <= a <= high]
     inside = [f"{a:g}" for a in HYPOTHESES if low <= a <= high]
     yield (
-        f"All these intervals lie between {number(low)} and {number(high)}. Of the whole exponents "
-        f"{', '.join(f'{a:g}' for a in HYPOTHESES)} that rules out {', '.join(outside) or 'none'}"
-        f" on these sizes and leaves {', '.join(inside) or 'none'}."
+        f"All intervals lie between {number(found.drift[0])} and {number(found.drift[1])}. As they "
+        "know nothing of larger sizes, that range is widened on either side by its own length: it "
+        f"then rules out {', '.join(outside) or 'none'} and leaves {', '.join(inside) or 'none'} "
+        f"of the whole exponents from {HYPOTHESES[0]:g} to {HYPOTHESES[-1]:g}."
         f"{trend([estimate for _, _, estimate in found.neighbours])}"
     )
     if found.transition_exponent is not None:
         yield (
             "The noise that leaves half of the vertices falls like n⁻ᵃ with a = "
             f"{_shown(found.transition_exponent)}."
+        )
+    if found.decay is not None:
+        yield (
+            f"Where less than {percent(REMNANT)} is left, at n = {found.curves[-1].n}, the "
+            f"vertices go like ε⁻ᵃ with a = {_shown(found.decay)}; far beyond the transition the "
+            "argument below expects a = 1."
         )
 
 

@@ -10,7 +10,7 @@ from harness.analysis import MODELS, GroupGrowth
 from harness.analysis.verdict import LinearClaim
 from harness.diagram.counts import DOMAINS, OBJECTIVES
 from harness.report import summary
-from harness.report.labels import bracket, curve_labels, number, sizes
+from harness.report.labels import bracket, curve_labels, number, sizes, spread
 from harness.report.sections import Cell, Table, cell
 
 #: What becomes of linear growth, short enough for a table.
@@ -125,9 +125,8 @@ def _most(analysed: GroupGrowth) -> list[Cell]:
 
 
 def _replicates(analysed: GroupGrowth) -> Cell:
-    counts = sorted({len(size.rows) for size in analysed.group.sizes})
-    text = f"{counts[0]}" if len(counts) == 1 else f"{counts[0]} … {counts[-1]}"
-    return Cell(text, str(counts[-1]))
+    counts = [len(size.rows) for size in analysed.group.sizes]
+    return Cell(spread(min(counts), max(counts)), str(max(counts)))
 
 
 def _failed(analysed: GroupGrowth) -> int:

@@ -98,3 +98,63 @@ def test_curves_are_read_from_rows() -> None:
     assert [curve.n for curve in found] == [8, 16]
     assert found[0].noise.tolist() == [1e-5, 1e-4, 1e-3, 1e-2]
     assert found[1].median.tolist() == [0.5] * 4
+
+
+def powers(power: float) -> list[Curve]:
+    """Curves of which ever less is left, like a power of the noise beyond the transition."""
+    rng = np.random.default_rng(4)
+    found = []
+    for n in SIZES:
+        share = np.minimum(1.0, (NOISES * n**2) ** -power)
+        samples = tuple(y * rng.lognormal(0, 0.05, 30) for y in share)
+        found.append(Curve(n, NOISES, samples))
+    return found
+
+
+@pytest.mark.parametrize("power", [0.6, 1.0])
+def test_the_power_by_which_the_last_vertices_go_is_recovered(power) -> None:
+    result = collapse(powers(power))
+    assert result is not None
+    assert result.decay is not None
+    assert result.decay.low <= power <= result.decay.high
+    assert result.decay.high - result.decay.low < 0.1
+
+
+def test_no_power_is_read_off_few_noises_or_no_vertices() -> None:
+    curves = planted(3.0)
+    kept = [Curve(c.n, c.noise[:4], c.samples[:4]) for c in curves]  # none leaves so little
+    assert min(curve.median.min() for curve in kept) > smoothed.REMNANT
+    result = collapse(kept)
+    assert result is not None
+    assert result.decay is None
+    gone = [
+        Curve(
+            c.n,
+            c.noise,
+            tuple(np.where(c.median[k] < 0.5, 0.0, s) for k, s in enumerate(c.samples)),
+        )
+        for c in curves
+    ]
+    result = collapse(gone)
+    assert result is not None
+    assert result.decay is None
+
+
+def drifting() -> list[Curve]:
+    """The exponents of neighbouring sizes are 2, 3 and 4."""
+    found = []
+    for curve, shift in zip(planted(0.0), (0, 2, 5, 9), strict=True):
+        found.append(Curve(curve.n, curve.noise / 2.0**shift, curve.samples))
+    return found
+
+
+def test_sizes_that_disagree_widen_what_is_possible() -> None:
+    steady, drifts = collapse(planted(3.0)), collapse(drifting())
+    assert steady is not None
+    assert drifts is not None
+    assert steady.is_consistent
+    assert not drifts.is_consistent
+    for result in (steady, drifts):
+        (low, high), (least, most) = result.drift, result.possible
+        assert low - least == pytest.approx(high - low)
+        assert most - high == pytest.approx(high - low)

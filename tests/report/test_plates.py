@@ -25,7 +25,7 @@ from harness.report.plates.curves import thinned
 from harness.report.plates.families import SHOWN
 from harness.report.plates.parts import diagram_of
 from harness.report.plates.shelf import captions, put, shelf
-from harness.report.plates.weaves import SEED, N, draw_woven_kernel, passings
+from harness.report.plates.weaves import SEED, N, draw_woven_kernel, opened_ties
 from tests.report.studies import sample, store
 
 NOWHERE = Path("nowhere")
@@ -63,14 +63,14 @@ def test_the_woven_kernel_shows_every_cell_and_says_its_counts() -> None:
     assert len(cells) == counts.cells
 
 
-def test_passings_are_the_edges_between_cells_of_one_family() -> None:
+def test_opened_ties_are_the_edges_between_cells_of_one_family() -> None:
     """Away from the centre the weave has two colours but for edges of microscopic length."""
     diagram = diagram_of("zigzag", N, SEED)
-    found = passings(diagram)
+    found = opened_ties(diagram)
     assert all(diagram.nodes[k].kind == "triple" for _, ends, _ in found for k in ends)
     lengths = [length for length, _, _ in found]
     assert max(lengths) < 1e-3
-    # Every triple point away from the centre belongs to one passing.
+    # Every triple point away from the centre belongs to one tie.
     ends = [k for _, pair, _ in found for k in pair]
     away = [
         k

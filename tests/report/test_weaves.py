@@ -91,8 +91,8 @@ def test_a_planted_scaling_is_found(exponent) -> None:
     (part,) = parts_of(noisy(exponent))
     assert part.slug == "smoothed"
     (view,) = part.shown["views"]
-    ruled_out = {2.0: "rules out 1, 3, 4, 5 on these sizes and leaves 2."}
-    ruled_out[3.0] = "rules out 1, 2, 4, 5 on these sizes and leaves 3."
+    ruled_out = {2.0: "rules out 1, 3, 4, 5 and leaves 2 of the whole exponents from 1 to 5."}
+    ruled_out[3.0] = "rules out 1, 2, 4, 5 and leaves 3 of the whole exponents from 1 to 5."
     assert any(ruled_out[exponent] in sentence for sentence in view["sentences"])
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -34,29 +35,13 @@ def audit_chapter(shop: Workshop) -> Chapter:
     if not records:
         return Chapter(SLUG, QUESTION, missing="No audit is stored here yet (avd audit makes it).")
     tones = {name: tone(CLAIMS[name], record) for name, record in records.items()}
-    against = [CLAIMS[name] for name in records if tones[name] == "bad"]
-    refuted = [claim.title for claim in against if claim.kind != "growth"]
-    above = [claim.title for claim in against if claim.kind == "growth"]
-    tried = sum(record["tally"]["holds"] + record["tally"]["fails"] for record in records.values())
-    sentences = [
-        f"{plural(len(records), 'reading')} of the paper’s statements, tried on {tried} instances "
-        f"in all: {sum(t == 'good' for t in tones.values())} held, {len(refuted)} did not, "
-        f"{sum(t == 'open' for t in tones.values())} remain open. What held is not thereby proved; "
-        "what did not has a counterexample below."
-    ]
-    if refuted:
-        sentences.append(f"Not as stated: {'; '.join(refuted)}.")
-    if above:
-        sentences[0] += f" {plural(len(above), 'statement')} on growth exceeded the bound set here."
-        sentences.append(
-            f"Above the bound set here, which is all that single counts refute: {'; '.join(above)}."
-        )
+    refuted = [claim for claim in _claims(tones, "bad") if claim.kind != "growth"]
     return Chapter(
         SLUG,
         QUESTION,
-        f"{len(refuted)} of {len(records)} readings fail" if against else "All that were tried",
-        "faster" if against else "",
-        sentences,
+        f"{len(refuted)} of {len(records)} readings fail" if refuted else "None was refuted",
+        "faster" if refuted else "",
+        list(_sentences(records, tones)),
         list(_pictures(shop, directory, records, tones)),
         [_table(records, tones)],
         [
@@ -69,10 +54,44 @@ def audit_chapter(shop: Workshop) -> Chapter:
     )
 
 
+def _claims(tones: Mapping[str, str], wanted: str) -> list[Claim]:
+    return [CLAIMS[name] for name, tone in tones.items() if tone == wanted]
+
+
+def _sentences(records: Records, tones: Mapping[str, str]) -> Iterator[str]:
+    """How many readings held, stayed within bounds or failed, and which did not hold."""
+    tried = sum(record["tally"]["holds"] + record["tally"]["fails"] for record in records.values())
+    held = Counter(claim.kind for claim in _claims(tones, "good"))
+    refuted = [claim for claim in _claims(tones, "bad") if claim.kind != "growth"]
+    above = [claim for claim in _claims(tones, "bad") if claim.kind == "growth"]
+    yield (
+        f"{plural(len(records), 'reading')} of the paper’s statements, {tried:,} checks in all. "
+        f"Of {len(refuted) + held['for all']} about every instance, {held['for all']} held "
+        "wherever they were tried, which proves nothing, and each of the other "
+        f"{len(refuted)} has a counterexample below. Of {len(above) + held['growth']} about "
+        f"growth, {held['growth']} stayed within the bound set here and {len(above)} exceeded it. "
+        f"Of existence: {held['there is']} shown by a witness. "
+        f"Open: {len(_claims(tones, 'open')) or 'none'}."
+    )
+    for words, claims in (
+        ("Not as stated", [claim for claim in refuted if not claim.beyond]),
+        (
+            "Failing in a reading that says more than the paper’s words must",
+            [claim for claim in refuted if claim.beyond],
+        ),
+        ("Above the bound set here, which is all that single counts refute", above),
+    ):
+        if claims:
+            yield f"{words}: {'; '.join(claim.title for claim in claims)}."
+
+
 def _table(records: Records, tones: Mapping[str, str]) -> Table:
     rows = []
     for name, record in records.items():
-        claim, counts = CLAIMS[name], [str(record["tally"][outcome]) for outcome in OUTCOMES]
+        claim, tally = CLAIMS[name], dict(record["tally"])
+        if claim.kind == "there is":
+            tally["fails"] = 0  # one without the property is no failure; the verdict says how many
+        counts = [str(tally[outcome]) for outcome in OUTCOMES]
         rows.append(
             [
                 Cell(claim.title),

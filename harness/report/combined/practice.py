@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import json
 from pathlib import Path
 
 from harness.analysis.meshes import PAPER, answer, findings
@@ -64,8 +65,8 @@ def bench_chapter(shop: Workshop) -> Chapter:
         "",
         [
             f"{plural(len(found), 'benchmark')} of {plural(total, 'instance')}; in {certified} of "
-            "them the result is certified. Times are medians of whole runs on the machine that "
-            "the manifest names, and say nothing about other machines."
+            "them the result is certified. Times are medians of so many whole runs as the tables "
+            "say, on the machine that the manifest names, and say nothing about other machines."
         ],
         (),
         tables,
@@ -74,8 +75,10 @@ def bench_chapter(shop: Workshop) -> Chapter:
 
 
 def _read(path: Path) -> list[dict[str, str]]:
+    """The rows as they are stored, and how many ``runs`` were timed for each."""
     with open(path, newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
+        rows = list(csv.DictReader(file))
+    return [{**row, "runs": str(len(json.loads(row.get("timings") or "[]")) or "")} for row in rows]
 
 
 #: A benchmark's columns on the page, where it has them.
@@ -84,6 +87,7 @@ SHOWN = {
     "vertices": "vertices",
     "sides": "sides",
     "seconds": "seconds",
+    "runs": "runs",
     "vertices_per_second": "vertices / s",
     "sides_per_second": "sides / s",
     "moves_per_second": "moves / s",

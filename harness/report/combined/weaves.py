@@ -48,7 +48,7 @@ def noise_chapter(shop: Workshop) -> Chapter:
     name, part = found
     views = part.shown["views"]
     sentences = [f"{view['title']}: {view['sentences'][0]}" for view in views]
-    powers = [f"n⁻{raised(number(view['exponent'].value, 2))} ({view['family']})" for view in views]
+    powers = [f"n⁻{raised(number(view['exponent'].value))} ({view['family']})" for view in views]
     answer = f"At these sizes about {' and '.join(powers)}"
     return Chapter(*NOISE, answer, "slower", sentences, part=part, sources=[name])
 

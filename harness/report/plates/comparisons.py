@@ -8,7 +8,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from harness.analysis.weave_rows import compare
-from harness.report import weave_figures
+from harness.report import tables, weave_figures
 from harness.report.labels import bracket, number
 from harness.report.plates.studies import rows_of
 from harness.report.smoothed import collapses, points_of
@@ -62,7 +62,7 @@ def smoothed_table(results: Path, family: str) -> pd.DataFrame:
 def draw_collapse(figure: Figure, results: Path, family: str) -> str:
     """The share that noise leaves, over the noise, and over the noise scaled by a power of n."""
     directory, rows = rows_of(results, SMOOTHED)
-    compared = compare(rows[rows["family"] == family])
+    compared = tables.from_csv(tables.to_csv(compare(rows[rows["family"] == family])))
     found = next((collapse for *_, collapse in collapses(compared)), None)
     exponent = found.exponent if found else None
     transition = {n: estimate.value for n, estimate in found.transition} if found else {}

@@ -38,7 +38,7 @@ STRIP = (1.0, 0.004)
 
 
 class Lens(Shapes):
-    """A window as small as a passing: only what is at its vertices is followed, and shown."""
+    """A window as small as an opened tie: only what is at its vertices is followed, and shown."""
 
     def __init__(self, whole: Shapes, nodes: tuple[int, ...], reach: float) -> None:
         """``whole``: the diagram as drawn without a lens, whose curves do for edges far away.
@@ -65,11 +65,12 @@ class Lens(Shapes):
         return super().outlines(cell) if cell in self.cells else []
 
 
-def passings(diagram: PlanarMap) -> list[tuple[float, tuple[int, int], int]]:
+def opened_ties(diagram: PlanarMap) -> list[tuple[float, tuple[int, int], int]]:
     """(length, its two ends, family) of the short edges between cells of one family.
 
-    Where a tip passes one of the other family, four cells meet but for such an edge.  Those that
-    are as near to the centre as they are long, where all tips start, are left out.
+    Half-way between two passings of tips four edges tie, but for noise, which opens the tie into
+    two vertices with such an edge between them.  Those that are as near to the centre as they are
+    long, where all tips start, are left out.
     """
     found = []
     for edge in diagram.edges:
@@ -83,12 +84,12 @@ def passings(diagram: PlanarMap) -> list[tuple[float, tuple[int, int], int]]:
 
 
 def draw_woven_kernel(figure: Figure, _: Path) -> str:
-    """The kernel of a zigzag star with 12 spikes; two passings and the centre under the lens."""
+    """The kernel of a zigzag star with 12 spikes; two opened ties and the centre under the lens."""
     diagram = diagram_of("zigzag", N, SEED)
     axes = canvas(figure, (0.0, 0.0, 5.5, 5.5), square(1.12))
     whole = PrintShapes(diagram, natural_window(diagram))
     _draw_star(axes, whole)
-    found = passings(diagram)
+    found = opened_ties(diagram)
     middle = [k for k, node in enumerate(diagram.nodes) if np.hypot(*node.point) < 0.01]
     extent = max(np.hypot(*diagram.nodes[k].point) for k in middle)
     lenses = [
@@ -101,19 +102,20 @@ def draw_woven_kernel(figure: Figure, _: Path) -> str:
     return (
         f"The kernel of a zigzag star with {N // 2} spikes (n = {N}) is woven into "
         f"{counted(diagram)}. Light cells belong to one family of edges, dark cells to its "
-        "mirror image; each cell has the colour of its edge on the rim. At every crossing of the "
-        "weave a tip of one family passes a tip of the other, and what looks like one point is "
-        f"two triple points, joined by an edge between two cells of one family: {len(found)} such "
-        f"edges outside the centre, none longer than {number(max(found)[0], 2)} of the star’s "
-        "radius. (a), (b) two of them under the lens; (c) the centre, where all tips start: "
-        f"{len(middle)} triple points."
+        "mirror image; each cell has the colour of its edge on the rim. Every second crossing of "
+        "the weave is a tie of four edges, and what looks like one point is two triple points, "
+        f"joined by an edge between two cells of one family: {len(found)} such edges outside the "
+        f"centre, none longer than {number(max(found)[0], 2)} of the star’s radius. At the other "
+        "crossings, where a tip of one family passes a tip of the other, noise has joined two "
+        "cells into one, and there is no vertex. (a), (b) two ties under the lens; (c) the centre, "
+        f"where all tips start: {len(middle)} triple points."
     )
 
 
 def _lens_at(
     whole: Shapes, found: list[tuple[float, tuple[int, int], int]], parity: int, height: float
 ) -> Lens:
-    """The lens on the passing of one family that is nearest to a place on the right."""
+    """The lens on the opened tie of one family that is nearest to a place on the right."""
     nodes_of = whole.diagram.nodes
     length, nodes, _ = min(
         (each for each in found if each[2] == parity),
