@@ -112,7 +112,7 @@ class Layers:
             )
             axes.add_patch(patch)
             if labels:
-                point, room = roomiest_point(rings)
+                point, room = roomiest_point(rings, self.diagram.instance.segments)
                 if room * scale > 5.0:
                     _write(axes, str(cell.segment), point, style.line, (0.0, 0.0))
 

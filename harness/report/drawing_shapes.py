@@ -205,10 +205,13 @@ def clip(ring: Points, box: Window) -> Points:
     return ring
 
 
-def roomiest_point(rings: Sequence[Points], steps: int = 24) -> tuple[Points, float]:
-    """A point inside the rings (even–odd) far from their boundary, and that distance.
+def roomiest_point(
+    rings: Sequence[Points], segments: Points, steps: int = 24
+) -> tuple[Points, float]:
+    """A point inside the rings (even–odd) far from their boundary and from segments (n, 2, 2).
 
-    The best of a grid of steps × steps points; distance 0 if none of them is inside.
+    The best of a grid of steps × steps points, and its distance from all that; 0 if none of them
+    is inside.  O(steps² · (points of the rings + segments beside them)).
     """
     corners = np.concatenate(rings)
     low, high = corners.min(axis=0), corners.max(axis=0)
@@ -218,6 +221,9 @@ def roomiest_point(rings: Sequence[Points], steps: int = 24) -> tuple[Points, fl
     distance = np.full(len(grid), np.inf)
     for a, b in _chords(rings):
         inside ^= _is_left_of(grid, a, b)
+        distance = np.minimum(distance, distance_to_chord(grid, a, b))
+    beside = (segments.max(axis=1) >= low) & (segments.min(axis=1) <= high)
+    for a, b in segments[beside.all(axis=1)]:
         distance = np.minimum(distance, distance_to_chord(grid, a, b))
     distance[~inside] = 0.0
     best = int(distance.argmax())

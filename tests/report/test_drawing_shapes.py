@@ -52,6 +52,9 @@ def visual_angles(diagram: PlanarMap, points: np.ndarray) -> np.ndarray:
     return np.abs(np.arctan2(ax * by - ay * bx, ax * bx + ay * by))
 
 
+NONE = np.zeros((0, 2, 2))
+
+
 @st.composite
 def diagrams(draw: st.DrawFn, max_segments: int = 3, max_vertices: int = 5) -> PlanarMap:
     kind, coordinates = draw(instances(max_segments, max_vertices))
@@ -168,7 +171,7 @@ def test_clipping_keeps_what_is_inside_the_box(ring, points) -> None:
 @given(st.lists(st.tuples(coordinate, coordinate), min_size=3, max_size=8))
 def test_the_roomiest_point_is_inside_and_as_far_as_it_says(ring) -> None:
     rings = [np.array(ring)]
-    point, distance = roomiest_point(rings)
+    point, distance = roomiest_point(rings, NONE)
     assume(distance > 1e-9)
     assert is_inside(rings, point)
     assert roomy_distance(rings[0], point) == pytest.approx(distance, rel=1e-9, abs=1e-12)
@@ -177,9 +180,20 @@ def test_the_roomiest_point_is_inside_and_as_far_as_it_says(ring) -> None:
 def test_the_roomiest_point_avoids_holes() -> None:
     square = np.array([(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)])
     hole = (1.0 + square / 2)[::-1]
-    point, distance = roomiest_point([square, hole])
+    point, distance = roomiest_point([square, hole], NONE)
     assert not is_inside([hole], point)
     assert 0.4 < distance <= 0.5 * (1 + 1e-9) + 0.3  # corners have a little more room
+
+
+def test_the_roomiest_point_keeps_away_from_segments() -> None:
+    """A segment that the cell does not notice: its number must not be written over another's."""
+    square = np.array([(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)])
+    far = [[(5.0, 2.0), (9.0, 2.0)]]
+    across = [[(-1.0, 2.0), (5.0, 2.0)]]
+    assert roomiest_point([square], np.array(far))[1] == roomiest_point([square], NONE)[1]
+    point, distance = roomiest_point([square], np.array(across))
+    assert abs(point[1] - 2.0) >= distance
+    assert distance == pytest.approx(1.0, abs=0.1)
 
 
 @pytest.mark.parametrize(
