@@ -7,12 +7,12 @@ import pytest
 
 from harness.audit import complexity
 from harness.audit.cases import is_valid, lattice_segments, lattice_stars, star_shaped
-from harness.audit.claim import Claim, Finding, Row, Tally
+from harness.audit.claim import Claim, Finding, Row, Series, Tally
 from harness.audit.diagrams import certificates
 from harness.audit.growing import series_of
 from harness.audit.pool import Workers, judged
 from harness.audit.registry import CLAIMS, chosen
-from harness.audit.runner import run_audit
+from harness.audit.runner import fits, run_audit
 from harness.audit.store import is_audit, read_rows, read_verdicts
 from harness.errors import UserError
 from harness.geometry.formats import read_instance
@@ -160,6 +160,26 @@ def test_a_planted_false_claim_is_refuted_shrunk_and_stored(tmp_path) -> None:
     assert len(rows) == 40
     assert is_audit(tmp_path)
     assert not is_audit(tmp_path / "instances")
+
+
+def test_the_same_instance_of_two_sources_is_tried_once(tmp_path) -> None:
+    eights = complexity.cases.families(("zigzag", 8, {}))
+    sizes = complexity.cases.sizes({"zigzag": (8, 12)})
+    claim = replace(PLANTED, cases=complexity.cases.together((eights, 1.0), (sizes, 1.0)), count=3)
+    run_audit([claim], tmp_path)
+    rows = read_rows(tmp_path)
+    assert [row.n for row in rows] == [8, 8, 8, 12]
+    assert len({row.seed for row in rows}) == 4
+
+
+def test_fits_name_what_was_counted() -> None:
+    def series(family: str, label: str, *, single: bool = True) -> Series:
+        return Series(family, "steps", (1,), (1,), {}, label, single, "")
+
+    found = fits(
+        [series("a {}", "n"), series("b", "n²"), series("c", "n"), series("d", "n", single=False)]
+    )
+    assert found == ["steps fit n (a, c)", "steps fit n² (b)"]
 
 
 def test_one_job_and_two_give_the_same_rows(tmp_path) -> None:

@@ -82,6 +82,27 @@ def audit(directory: Path) -> None:
             "example": example,
             **common,
         },
+        "linear-kernel": {
+            "claim": "linear-kernel",
+            "verdict": "above the bound on 1 of 4 tried",
+            "tally": {**nothing, "holds": 3, "fails": 1},
+            "example": None,
+            **common,
+        },
+        "not-a-vertex": {
+            "claim": "not-a-vertex",
+            "verdict": "shown by 2 of 19",
+            "tally": {**nothing, "holds": 2, "fails": 17},
+            "example": None,
+            **common,
+        },
+        "convex-levels-interior": {
+            "claim": "convex-levels-interior",
+            "verdict": "fails on 1 of 1",
+            "tally": {**nothing, "fails": 1},
+            "example": None,
+            **common,
+        },
     }
     (directory / "verdicts.json").write_text(json.dumps(verdicts))
     pair = {"kind": "segments", "segments": [[[0, 0], [1, 0]], [[3, -1], [3, 1]]]}
@@ -154,7 +175,7 @@ def test_answers_come_from_the_rows(results: Path, files: dict[str, str]) -> Non
     assert best["per_edge"] - 0.1 < float(bound.replace(",", "")) <= best["per_edge"]
     assert "fails on 2 of 5" in said
     assert "segment <1> is whole" in said
-    assert "1 of 2 readings fail" in said
+    assert "2 of 5 readings fail" in said
     assert "The smallest angle rose in 6 of 9 runs" in said
     assert (
         "The paper’s greedy raised the smallest angle on 1 of 3 meshes and lowered it on 1" in said
@@ -210,7 +231,7 @@ def test_the_verb_knows_a_directory_of_studies(results: Path, tmp_path: Path, ca
     out = capsys.readouterr().out.splitlines()
     assert out[0] == str(results / REPORT)
     assert any(
-        line.startswith("Which statements of the paper hold? 1 of 2 readings fail") for line in out
+        line.startswith("Which statements of the paper hold? 2 of 5 readings fail") for line in out
     )
 
 
@@ -223,3 +244,18 @@ def test_damaged_files_are_refused(tmp_path: Path) -> None:
     (root / "audit" / "verdicts.json").write_text("{")
     with pytest.raises(UserError, match=r"verdicts\.json: cannot be read"):
         outputs(root)
+
+
+def test_the_audit_tells_refuted_readings_bounds_and_witnesses_apart(files: dict[str, str]) -> None:
+    text = words(files[REPORT])
+    assert "2 of 5 readings fail" in text
+    assert (
+        "5 readings of the paper’s statements, 36 checks in all. Of 3 about every instance, 1 held "
+        "wherever they were tried, which proves nothing, and each of the other 2 has a "
+        "counterexample below. Of 1 about growth, 0 stayed within the bound set here and 1 "
+        "exceeded it. Shown by a witness: 1 of existence. Open: none."
+    ) in text
+    assert "Not as stated: Lemma 2." in text
+    assert "more than the paper’s words must: Convex level sets, interior." in text
+    table = pd.read_csv(io.StringIO(files["data/statements.csv"])).set_index("claim")
+    assert table.loc["not-a-vertex", "fails"] == 17

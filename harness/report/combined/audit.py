@@ -70,7 +70,7 @@ def _sentences(records: Records, tones: Mapping[str, str]) -> Iterator[str]:
         "wherever they were tried, which proves nothing, and each of the other "
         f"{len(refuted)} has a counterexample below. Of {len(above) + held['growth']} about "
         f"growth, {held['growth']} stayed within the bound set here and {len(above)} exceeded it. "
-        f"Of existence: {held['there is']} shown by a witness. "
+        f"Shown by a witness: {held['there is']} of existence. "
         f"Open: {len(_claims(tones, 'open')) or 'none'}."
     )
     for words, claims in (
