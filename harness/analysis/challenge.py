@@ -36,7 +36,7 @@ from harness.analysis.models import (
     relative_miss,
     relative_weights,
 )
-from harness.analysis.statistics import RESAMPLES, interval
+from harness.analysis.statistics import RESAMPLES, interval, without_noise
 
 LEVEL = 0.99
 #: A rejection has to stand without the smallest size as well, at this level: there are fewer
@@ -201,14 +201,15 @@ def _trial(model: Model, series: Series, worlds: Floats, cut: int, level: float)
     weights = relative_weights(small, series.observed[:cut])
     predicted = np.maximum(large @ fit(small, series.observed[None, :cut], weights)[0], 0.0)
     observed = series.observed[cut:]
-    miss = float(relative_miss(observed, predicted).mean())
+    miss = without_noise(relative_miss(observed, predicted).mean())
 
     predictions = np.maximum(fit(small, worlds[:, :cut], weights) @ large.T, 0.0)
-    low, high = interval(relative_miss(worlds[:, cut:], predictions).mean(axis=1), level)
+    misses = relative_miss(worlds[:, cut:], predictions).mean(axis=1)
+    low, high = (without_noise(end) for end in interval(misses, level))
     band_low, band_high = interval(predictions, level)
     visible = _visible(series, observed, predicted)
-    finding = _finding(float(low), float(high), visible, series.censored, cut)
-    return Trial(model, finding, miss, float(low), float(high), predicted, band_low, band_high)
+    finding = _finding(low, high, visible, series.censored, cut)
+    return Trial(model, finding, miss, low, high, predicted, band_low, band_high)
 
 
 def _visible(series: Series, observed: Floats, predicted: Floats) -> bool:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from harness.analysis.models import Floats
-from harness.analysis.statistics import interval
+from harness.analysis.statistics import interval, without_noise
 
 #: Fewer sizes make a slope, not a fit.
 LEAST_SIZES = 3
@@ -55,7 +55,7 @@ def power_law(n: Floats, values: Floats, draws: Floats | None) -> PowerLaw:
         return PowerLaw(None, None, None, None, f"undefined: {why}")
     x = np.log(n[start:])
     x = (x - x.mean()) / ((x - x.mean()) ** 2).sum()
-    exponent = round(float(np.log(values[start:]) @ x), 12)  # level counts: 0, not 1e-16
+    exponent = without_noise(np.log(values[start:]) @ x)
     note = "" if start == 0 else f"fitted from n = {n[start]:g}, after the last count of zero"
     if draws is None:
         note = "; ".join(filter(None, [note, "no bootstrap: the replicates agree"]))
@@ -65,4 +65,4 @@ def power_law(n: Floats, values: Floats, draws: Floats | None) -> PowerLaw:
         note = "; ".join(filter(None, [note, "no interval: resamples reach zero"]))
         return PowerLaw(exponent, None, None, float(n[start]), note)
     low, high = interval(np.log(usable) @ x)
-    return PowerLaw(exponent, float(low), float(high), float(n[start]), note)
+    return PowerLaw(exponent, without_noise(low), without_noise(high), float(n[start]), note)

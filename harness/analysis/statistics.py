@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal, TypeAlias, get_args
+from typing import Literal, SupportsFloat, TypeAlias, get_args
 
 import numpy as np
 
@@ -81,3 +81,13 @@ def interval(draws: Floats, level: float = 0.95) -> tuple[Floats, Floats]:
     ordered = np.sort(draws, axis=0)
     outside = int((1 - level) / 2 * len(ordered))
     return ordered[outside], ordered[len(ordered) - 1 - outside]
+
+
+def without_noise(value: SupportsFloat) -> float:
+    """A number of the order of one, without the digits that processors do not agree on.
+
+    Sums of logarithms and products of matrices end in digits that depend on the order of the
+    additions, hence on the processor.  What ought to be zero would consist of nothing else, and
+    the same counts would be reported differently on another machine.
+    """
+    return round(float(value), 12) + 0.0  # + 0.0: no negative zero
