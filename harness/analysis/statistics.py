@@ -84,10 +84,10 @@ def interval(draws: Floats, level: float = 0.95) -> tuple[Floats, Floats]:
 
 
 def without_noise(value: SupportsFloat) -> float:
-    """A number of the order of one, without the digits that processors do not agree on.
+    """A number of the order of one, to a millionth: without digits that processors disagree on.
 
     Sums of logarithms and products of matrices end in digits that depend on the order of the
     additions, hence on the processor.  What ought to be zero would consist of nothing else, and
     the same counts would be reported differently on another machine.
     """
-    return round(float(value), 12) + 0.0  # + 0.0: no negative zero
+    return round(float(value), 6) + 0.0  # + 0.0: no negative zero

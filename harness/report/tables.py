@@ -120,9 +120,9 @@ def trials(analysed: GroupGrowth) -> pd.DataFrame:
                         "miss_high": trial.high,
                         "n": n,
                         "observed": curve.observed[cut + index],
-                        "predicted": trial.predicted[index],
-                        "predicted_low": trial.predicted_low[index],
-                        "predicted_high": trial.predicted_high[index],
+                        "predicted": _to_six_digits(trial.predicted[index]),
+                        "predicted_low": _to_six_digits(trial.predicted_low[index]),
+                        "predicted_high": _to_six_digits(trial.predicted_high[index]),
                     }
                 )
     columns = [
@@ -130,6 +130,11 @@ def trials(analysed: GroupGrowth) -> pd.DataFrame:
         *("observed", "predicted", "predicted_low", "predicted_high"),
     ]
     return pd.DataFrame.from_records(records, columns=columns)
+
+
+def _to_six_digits(fitted: float) -> float:
+    """A fitted value as every processor finds it: see ``without_noise``."""
+    return float(f"{fitted:.6g}")
 
 
 def verdicts(study: Sequence[GroupGrowth]) -> pd.DataFrame:
