@@ -17,6 +17,7 @@ LEAST_SIZES = 3
 class PowerLaw:
     """The fitted exponent; ``low``/``high`` is its 95 % bootstrap interval, None if there is none.
 
+    All three are given to a millionth: see ``without_noise``.
     ``start`` is the smallest size in the fit.  ``reason`` says why a number is missing.
     """
 
