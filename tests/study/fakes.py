@@ -164,6 +164,17 @@ def endless_and_logged(log: Path, task: Task) -> Measurement:
     return quick(task)
 
 
+def logged_until_full(log: Path, task: Task) -> Measurement:
+    """As ``slow_and_logged``, but endless once ``log`` has the lines that ``full`` beside it says.
+
+    So the study is under way until it is interrupted, however slow the one who interrupts it is.
+    """
+    done = log.read_text().count("\n") if log.exists() else 0
+    if done >= int((log.parent / "full").read_text()):
+        time.sleep(3600)
+    return slow_and_logged(log, task)
+
+
 def fail_until_mended(mended: Path, task: Task) -> Measurement:
     """Fails for n > 4 while the file ``mended`` is missing."""
     if task.n > 4 and not mended.exists():

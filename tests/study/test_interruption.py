@@ -143,7 +143,9 @@ def test_politely_interrupted_a_study_keeps_every_row_and_says_so(
     directory, log = tmp_path / "results", tmp_path / "log"
     kept = b""
     for number, send in INTERRUPTIONS:
-        process = _start(directory, log, "resume")
+        done = log.read_text().count("\n") if log.exists() else 0
+        (tmp_path / "full").write_text(str(done + 6))
+        process = _start(directory, log, "resume", "logged_until_full")
         _wait_for_rows(process, directory, kept.count(b"\n") + 4)
         send(process.pid, number)
         _, errors = process.communicate(timeout=30)
