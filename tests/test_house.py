@@ -65,6 +65,9 @@ def code_blocks(language: str) -> list[str]:
     return [block for name, block in fenced if name == language]
 
 
+MAY_LACK = {"tests/report/test_browser.py": "Chromium"}  # what a machine may lack, and who asks
+
+
 # --- lint, formatting, types ---------------------------------------------------------------------
 
 
@@ -85,10 +88,13 @@ def test_nothing_is_left_open_or_silenced_without_a_reason() -> None:
     skipped = re.compile(r"pytest\.(mark\.)?(sk" + r"ip|xf" + r"ail)")
     silenced = re.compile(r"# (type: ig" + r"nore|no" + r"qa)\b(?!.*[#(]\s*\S)")
     found = [
-        f"{path.relative_to(ROOT)}:{number}: {line.strip()}"
+        f"{name}:{number}: {line.strip()}"
         for path in sources("generators", "harness", "tests")
+        for name in [str(path.relative_to(ROOT))]
         for number, line in enumerate(path.read_text().splitlines(), 1)
-        if unfinished.search(line) or skipped.search(line) or silenced.search(line)
+        if unfinished.search(line)
+        or silenced.search(line)
+        or (skipped.search(line) and MAY_LACK.get(name, "nothing") not in line)
     ]
     assert found == []
 
