@@ -93,9 +93,12 @@ class Edge:
     def polyline(self, tolerance: float, window: Window | None = None) -> NDArray[np.float64]:
         """Points from start to end, shape (m, 2), within ``tolerance`` of the true curve.
 
+        That is proved of nearly every piece (:mod:`harness.diagram.chords`); where two branches of
+        the bisector cross, and at the limits of doubles, it is checked in places close together.
+
         Unbounded ends are followed until they have left ``window`` (xmin, ymin, xmax, ymax), by
-        default three times the box of the segments.  As far from it as it is wide, and further
-        out, the curve may be off by more, in proportion to the distance.
+        default three times the box of the segments.  Outside the window the curve may be off by
+        more, in proportion to the distance.
         """
         return self.course.polyline(tolerance, window)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable
 from fractions import Fraction
 from functools import cached_property
 
@@ -13,18 +13,19 @@ from numpy.typing import NDArray
 
 from harness.diagram.algebra import FIRST_PRECISION, NotGeneric, Point
 from harness.diagram.arcs import Arc
+from harness.diagram.chords import (
+    BisectorChords,
+    Position,
+    allowed_in,
+    default_window,
+    refined,
+)
 from harness.diagram.cotangents import cotangent_values
 from harness.diagram.fibres import rational_between
 from harness.diagram.planar_map import RationalPoint, Window
 from harness.diagram.scene import Scene
 
 FAR = 2**60
-SAME = 2.0**-50
-"""Points closer than this part of their size are the same for a polyline."""
-DEEPEST = 60
-"""How often a piece of a polyline is halved at most: its points go from the finest doubles on."""
-
-Position = tuple[float, float]
 
 
 class ExactPlace:
@@ -91,16 +92,18 @@ class ExactCourse:
     def polyline(self, tolerance: float, window: Window | None) -> NDArray[np.float64]:
         """See :meth:`harness.diagram.planar_map.Edge.polyline`.
 
-        All points lie on the edge exactly, up to rounding.  A piece is bisected until its middle
-        is within ``tolerance`` of its chord (or as near as doubles can tell); that the rest of the
-        piece is, too, is not proved.
+        All points lie on the edge exactly, up to rounding.
         """
         if not tolerance > 0:
             raise ValueError("the tolerance must be positive")
         points: list[tuple[float, float]] = []
-        view = window or default_window(self.scene.segments)
+        corners = np.array(self.scene.segments, dtype=float).reshape(-1, 2)
+        view = window or default_window(corners)
+        allowed, limit = allowed_in(view, tolerance), _limit(self.scene, view)
+        pair = [self.scene.segments[k] for k in self.segments]
+        chords = BisectorChords(np.array(pair, dtype=float))
         for arc, forward in self.chain:
-            piece = _arc_polyline(self.scene, arc, tolerance, view)
+            piece = _arc_polyline(self.scene, arc, limit, chords, allowed)
             piece = piece if forward else piece[::-1]
             points += piece[1:] if points else piece
         return np.array(points)
@@ -113,14 +116,6 @@ class ExactCourse:
             for value in cotangent_values(self.scene, arc, self.segments)
         ]
         return min(values), max(values)
-
-
-def default_window(segments: Sequence[tuple[RationalPoint, RationalPoint]]) -> Window:
-    """Three times the box of the segments."""
-    xs = [float(p[0]) for segment in segments for p in segment]
-    ys = [float(p[1]) for segment in segments for p in segment]
-    reach = max(max(xs) - min(xs), max(ys) - min(ys))
-    return min(xs) - reach, min(ys) - reach, max(xs) + reach, max(ys) + reach
 
 
 def _limit(scene: Scene, window: Window) -> fmpq:
@@ -168,9 +163,14 @@ def _between(low: fmpq, high: fmpq, s: float) -> fmpq:
     return fmpq(((end + step) / grain).floor()) * grain
 
 
-def _arc_polyline(scene: Scene, arc: Arc, tolerance: float, window: Window) -> list[Position]:
-    low, high = _open_range(arc, _limit(scene, window))
-    size = max(window[2] - window[0], window[3] - window[1])
+def _arc_polyline(
+    scene: Scene,
+    arc: Arc,
+    limit: fmpq,
+    chords: BisectorChords,
+    allowed: Callable[[Position, Position], float],
+) -> list[Position]:
+    low, high = _open_range(arc, limit)
 
     def point(s: float) -> Position:
         """s ∈ [0, 1], crowded towards the ends, where the arc may be vertical."""
@@ -180,34 +180,4 @@ def _arc_polyline(scene: Scene, arc: Arc, tolerance: float, window: Window) -> l
             return scene.floats(arc.end)
         return scene.floats(_at(arc, _between(low, high, s) if 0 < s < 1 else (low, high)[int(s)]))
 
-    def is_straight(p: Position, m: Position, q: Position) -> bool:
-        # What is far away is seen from the window, and so may be off by more.
-        allowed = tolerance * (1 + _distance_to_box(p, q, window) / size)
-        return _distance_to_chord(m, p, q) <= max(allowed, SAME * (abs(m[0]) + abs(m[1])))
-
-    def refine(a: float, p: Position, b: float, q: Position, depth: int) -> list[Position]:
-        middle = (a + b) / 2
-        m = point(middle)
-        if (depth >= 2 and is_straight(p, m, q)) or depth == DEEPEST:
-            return [m, q]
-        left = refine(a, p, middle, m, depth + 1)
-        return left + refine(middle, m, b, q, depth + 1)
-
-    start, end = point(0.0), point(1.0)
-    return [start, *refine(0.0, start, 1.0, end, 0)]
-
-
-def _distance_to_box(p: Position, q: Position, box: Window) -> float:
-    """How far the box of p and q is from another box."""
-    dx = max(box[0] - max(p[0], q[0]), min(p[0], q[0]) - box[2], 0.0)
-    dy = max(box[1] - max(p[1], q[1]), min(p[1], q[1]) - box[3], 0.0)
-    return math.hypot(dx, dy)
-
-
-def _distance_to_chord(m: Position, p: Position, q: Position) -> float:
-    length = math.dist(p, q)
-    if length == 0:
-        return math.dist(m, p)
-    along = ((m[0] - p[0]) * (q[0] - p[0]) + (m[1] - p[1]) * (q[1] - p[1])) / length**2
-    along = min(1.0, max(0.0, along))
-    return math.dist(m, (p[0] + along * (q[0] - p[0]), p[1] + along * (q[1] - p[1])))
+    return list(refined(point, (0.0, 1.0), chords, allowed))

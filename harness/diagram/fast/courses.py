@@ -3,23 +3,24 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
 
+from harness.diagram.chords import (
+    SAME,
+    BisectorChords,
+    Position,
+    allowed_in,
+    default_window,
+    refined,
+)
 from harness.diagram.fast.chart import Chart
 from harness.diagram.fast.counting import FastDiagram
 from harness.diagram.fast.leaf_arcs import LeafArc
 from harness.diagram.fast.node_points import local_arc, node_point
 from harness.diagram.planar_map import Edge, Window
-
-Point = tuple[float, float]
-
-#: Halvings of a stretch of an edge at most.
-_DEEPEST = 40
-#: Relative to the coordinates: how far apart points are that cannot well be told apart.
-_SAME = 1e-14
 
 
 class ArcCourse:
@@ -36,18 +37,22 @@ class ArcCourse:
     def polyline(self, tolerance: float, window: Window | None = None) -> NDArray[np.float64]:
         """See :meth:`harness.diagram.planar_map.Edge.polyline`.
 
-        All points lie on the edge up to rounding; its ends are the nodes' points.  A piece is
-        halved until its middle is within ``tolerance`` of its chord (or as near as doubles can
-        tell); that the rest of the piece is, too, is not proved.
+        All points lie on the edge up to rounding; its ends are the nodes' points.
 
         Raises ValueError if the tolerance is not positive.
         """
         if not tolerance > 0:
             raise ValueError("the tolerance must be positive")
         horizon = _Horizon(self.diagram, window)
-        points: list[Point] = []
+        view = window or default_window(self.diagram.instance.segments.reshape(-1, 2))
+        allowed = allowed_in(view, tolerance)
+        points: list[Position] = []
         for half in self.halves():
-            piece = self._piece(half >> 1, tolerance, window, horizon)
+            local = self._local(half >> 1)
+            if local is not None:
+                piece = [(x, y) for x, y in local.polyline(tolerance, window).tolist()]
+            else:
+                piece = self._leaf_polyline(self._leaf_arc(half >> 1), horizon, allowed)
             points += piece[::-1] if half & 1 else piece
         return np.array(self._joined(points))
 
@@ -93,18 +98,17 @@ class ArcCourse:
     def _leaf_arc(self, arc: int) -> LeafArc:
         return LeafArc(Chart(self.diagram, int(self.diagram.arrays.leaf_of_arc[arc])), arc)
 
-    def _piece(
-        self, arc: int, tolerance: float, window: Window | None, horizon: _Horizon
-    ) -> list[Point]:
+    def _leaf_polyline(
+        self, arc: LeafArc, horizon: _Horizon, allowed: Callable[[Position, Position], float]
+    ) -> list[Position]:
         """The points of an arc from its first end to its last."""
-        local = self._local(arc)
-        if local is not None:
-            return [(x, y) for x, y in local.polyline(tolerance, window).tolist()]
-        leaf_arc = self._leaf_arc(arc)
-        low, high = horizon.cut(leaf_arc, 0), horizon.cut(leaf_arc, 1)
-        return list(_refined(leaf_arc, low, high, tolerance))
+        low, high = horizon.cut(arc, 0), horizon.cut(arc, 1)
+        count = len(arc.stretches)
+        cuts = [low, *(k / count for k in range(1, count) if low < k / count < high), high]
+        chords = BisectorChords(self.diagram.instance.segments[list(arc.pair)])
+        return list(refined(arc.point, cuts, chords, allowed))
 
-    def _joined(self, points: list[Point]) -> list[Point]:
+    def _joined(self, points: list[Position]) -> list[Position]:
         """The points from node to node, none repeated."""
         start, end = self.diagram.edges[self.edge, :2].tolist()
         if start < 0:
@@ -115,11 +119,11 @@ class ArcCourse:
         size = max(max(abs(x), abs(y)) for x, y in points)
         kept, last = [points[0]], points[-1]
         for p in points[1:-1]:
-            if min(math.dist(p, kept[-1]), math.dist(p, last)) > _SAME * size:
+            if min(math.dist(p, kept[-1]), math.dist(p, last)) > SAME * size:
                 kept.append(p)
         return [*kept, last]
 
-    def _node_or(self, node: int, point: Point) -> Point:
+    def _node_or(self, node: int, point: Position) -> Position:
         """The point of a node, unless it is at infinity."""
         inside = len(self.diagram.arrays.vertices) + len(self.diagram.nodes.corners)
         if node < inside or self.diagram.domain != "plane":
@@ -151,32 +155,3 @@ class _Horizon:
                 break
             step /= 2
         return r
-
-
-def _refined(arc: LeafArc, low: float, high: float, tolerance: float) -> Iterator[Point]:
-    """The points of an arc from parameter ``low`` to ``high``."""
-    count = len(arc.stretches)
-    cuts = [low, *(k / count for k in range(1, count) if low < k / count < high), high]
-    points = [arc.point(r) for r in cuts]
-    yield points[0]
-    pieces = list(zip(cuts, points, cuts[1:], points[1:], strict=False))
-    waiting = [(*piece, 0) for piece in reversed(pieces)]
-    while waiting:
-        a, p, b, q, depth = waiting.pop()
-        middle = (a + b) / 2
-        m = arc.point(middle)
-        enough = max(tolerance, _SAME * (abs(m[0]) + abs(m[1])))
-        if (depth >= 1 and _distance_to_chord(m, p, q) <= enough) or depth == _DEEPEST:
-            yield m
-            yield q
-        else:
-            waiting += [(middle, m, b, q, depth + 1), (a, p, middle, m, depth + 1)]
-
-
-def _distance_to_chord(m: Point, p: Point, q: Point) -> float:
-    length = math.dist(p, q)
-    if length == 0:
-        return math.dist(m, p)
-    along = ((m[0] - p[0]) * (q[0] - p[0]) + (m[1] - p[1]) * (q[1] - p[1])) / length**2
-    along = min(1.0, max(0.0, along))
-    return math.dist(m, (p[0] + along * (q[0] - p[0]), p[1] + along * (q[1] - p[1])))

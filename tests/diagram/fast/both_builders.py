@@ -29,6 +29,8 @@ FIVE = segments(
 HEPTAGON = polygon((6, 1), (5, 4), (1, 5), (-4, 6), (-6, 0), (-3, -5), (3, -4))
 DART = polygon((2, 0), (1, 1), (5, 7), (1, 3), (-6, 5), (-1, -2))
 ACROSS = segments(((0, 0), (1, 0)), ((3, -1), (3, 1)))
+#: An edge of its kernel turns one way and then the other, so that its middle is near its chord.
+WAVY = polygon((2, 5), (0, 2), (0, 0), (2, 0), (3, 1))
 COLLINEAR = segments(((0, 0), (2, 0)), ((3, 0), (4, 0)), ((0, 3), (1, 5)))
 
 
@@ -41,6 +43,7 @@ CASES: dict[str, tuple[Instance, Domain, Objective]] = {
     "five-largest": (FIVE, "plane", "largest"),
     "heptagon": (HEPTAGON, "kernel", "smallest"),
     "heptagon-largest": (HEPTAGON, "interior", "largest"),
+    "wavy": (WAVY, "kernel", "smallest"),
     "square": (polygon(*SQUARE), "kernel", "smallest"),
     "dart": (DART, "interior", "smallest"),
     "dart-largest": (DART, "kernel", "largest"),
