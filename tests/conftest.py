@@ -1,7 +1,7 @@
 """Hypothesis profiles: the same examples on every run where ``CI`` is set, new ones elsewhere.
 
-And signals: a shell starts what runs in its background with SIGINT ignored, and programs inherit
-that; those that the tests interrupt would then run on.
+And signals: a shell starts what runs in its background with SIGINT ignored, ``nohup`` ignores
+SIGHUP, and programs inherit that; those that the tests interrupt would then run on.
 """
 
 import os
@@ -16,5 +16,10 @@ settings.register_profile(
 settings.register_profile("dev", deadline=None)
 settings.load_profile("ci" if os.environ.get("CI") else "dev")
 
-if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
-    signal.signal(signal.SIGINT, signal.default_int_handler)
+for number, usual in (
+    (signal.SIGINT, signal.default_int_handler),
+    (signal.SIGTERM, signal.SIG_DFL),
+    (signal.SIGHUP, signal.SIG_DFL),
+):
+    if signal.getsignal(number) == signal.SIG_IGN:
+        signal.signal(number, usual)

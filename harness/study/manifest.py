@@ -64,6 +64,12 @@ def read_manifest(directory: Path) -> Manifest | None:
     return manifest
 
 
+def was_killed(manifest: Manifest | None) -> bool:
+    """Whether the last run never came to its end, so that rows may be in no order yet."""
+    runs = [] if manifest is None else manifest["runs"]
+    return bool(runs) and runs[-1]["end"] is None
+
+
 def write_manifest(directory: Path, manifest: Manifest) -> None:
     """Write the manifest in one step."""
     text = json.dumps(manifest, indent=2, ensure_ascii=False) + "\n"

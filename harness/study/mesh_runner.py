@@ -13,7 +13,7 @@ from harness.errors import UserError
 from harness.study.engines import Results, check_dask, run_dask, run_local
 from harness.study.interrupt import interruptible
 from harness.study.lock import locked
-from harness.study.manifest import RunRecord, read_manifest
+from harness.study.manifest import RunRecord, read_manifest, was_killed
 from harness.study.mesh_rows import append_row, read_meshes, write_rows
 from harness.study.meshes import (
     DESCRIPTION,
@@ -71,7 +71,7 @@ def run_meshes(
     with locked(directory):
         if mode == "fresh":
             move_to_earlier(directory)
-        read_manifest(directory)  # refuse a newer one before anything is written
+        manifest = read_manifest(directory)  # refuses a newer one before anything is written
         path = directory / ROWS
         rows = read_meshes(directory) if path.exists() else []
         keys = {task.key for task in chosen}
@@ -82,9 +82,9 @@ def run_meshes(
         ]
         missing = [task for task in chosen if task.key not in {row["task"] for row in kept}]
         statuses = Counter(row["status"] for row in kept)
-        if not missing:
+        if not missing and not was_killed(manifest):
             return Summary(directory, len(chosen), statuses, 0, False)
-        if mode == "new" and rows:
+        if mode == "new" and rows and missing:
             raise UserError(
                 f"{directory} holds {len(kept)} of the {len(chosen)} tasks of this study; "
                 f"continue with: {resume_command} (or start anew with --fresh in place of --resume)"

@@ -29,7 +29,7 @@ from harness.study.engines import Results, check_dask, run_dask, run_local
 from harness.study.interrupt import interruptible
 from harness.study.isolate import Work
 from harness.study.lock import LOCK, locked
-from harness.study.manifest import MANIFEST, RunRecord, read_manifest
+from harness.study.manifest import MANIFEST, RunRecord, read_manifest, was_killed
 from harness.study.outcome import Outcome, one_line, row_of
 from harness.study.processors import default_jobs
 from harness.study.progress import Progress
@@ -98,13 +98,14 @@ def run_study(
     with locked(directory):
         if mode == "fresh":
             move_to_earlier(directory)
-        read_manifest(directory)  # refuse a newer one before anything is written
+        manifest = read_manifest(directory)  # refuses a newer one before anything is written
         plan = _plan(study, directory, retry=mode == "retry")
         if mode == "new" and plan.kept and not plan.is_noop:
             raise UserError(_unfinished(study, directory, plan, resume_command))
         text = study.text.encode()
-        unchanged = plan.is_noop and _read(directory / STUDY) == text
-        if not unchanged:
+        same = plan.is_noop and _read(directory / STUDY) == text
+        unchanged = same and not was_killed(manifest)
+        if not same:
             replace(directory / STUDY, text)
             set_aside(directory, plan.leaving, plan.staying)
         with RowFile(directory / ROWS) as rows:

@@ -133,6 +133,27 @@ def test_a_run_killed_before_its_first_row_starts_without_ado(tmp_path: Path) ->
     assert len(load(tmp_path)) == 12
 
 
+def test_a_run_killed_after_its_last_row_is_brought_to_its_end(tmp_path: Path) -> None:
+    """All rows are there, but neither in order nor is it written that the run is over."""
+    made = study()
+    _run(made, tmp_path)
+    ordered = read_rows(tmp_path / ROWS)
+    replace_rows(tmp_path / ROWS, ordered[::-1])
+    manifest = json.loads((tmp_path / "manifest.json").read_text())
+    manifest["runs"][-1].update(end=None, tasks=0)
+    (tmp_path / "manifest.json").write_text(json.dumps(manifest))
+    summary = _run(made, tmp_path, "resume", work=fakes.misbehave)
+    assert (summary.added, summary.missing, summary.interrupted) == (0, 0, False)
+    assert read_rows(tmp_path / ROWS) == ordered
+    killed, last = json.loads((tmp_path / "manifest.json").read_text())["runs"]
+    assert (killed["interrupted"], killed["end"]) == (True, None)
+    assert (last["interrupted"], last["tasks"]) == (False, 0)
+    assert last["end"] is not None
+    before = (tmp_path / "manifest.json").read_bytes()
+    _run(made, tmp_path, "resume", work=fakes.misbehave)
+    assert (tmp_path / "manifest.json").read_bytes() == before
+
+
 def test_other_peoples_directories_are_left_alone(tmp_path: Path) -> None:
     (tmp_path / "thesis.tex").touch()
     with pytest.raises(UserError, match="not empty and holds no study"):
